@@ -4,9 +4,7 @@
 #include <numbers>
 #include <string>
 #include <titop/blocks/diagram_file/diagram_file.hpp>
-#include <titop/blocks/fe/interfaces.hpp>
 #include <titop/blocks/fe/modal_csv.hpp>
-#include <titop/blocks/fe/plate.hpp>
 #include <titop/blocks/flexible_body.hpp>
 #include <titop/blocks/line_port.hpp>
 #include <titop/blocks/port_hamiltonian.hpp>
@@ -14,6 +12,7 @@
 #include <titop/graph/linalg/eigen.hpp>
 #include <vector>
 
+#include "panels.hpp"
 #include "support/mistakes.hpp"
 #include "support/transfer_error.hpp"
 
@@ -21,6 +20,7 @@
 /// mounting rotations.
 
 using namespace titop;
+using namespace panels;
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
@@ -31,27 +31,7 @@ using Complex = std::complex<double>;
 
 namespace {
 
-constexpr int kPolynomials = 4;
 constexpr double kSpring = 30, kDamper = 0.4;  // of the hinge [N m/rad, N m s/rad]
-
-fe::Mesh panel(double a, int along_x, int along_y) {
-  return plate_mesh({.a = a,
-                     .b = 0.6,
-                     .thickness = 0.004,
-                     .material = {.E = 70e9, .nu = 0.3, .rho = 2700},
-                     .elements = {along_x, along_y}});
-}
-
-fe::Coupling shapes(const fe::Mesh& mesh, const std::string& edge) {
-  return fe::shapes(fe::edge(mesh, edge), fe::legendre(kPolynomials));
-}
-
-/// Held along a part of an edge, so that it bends and twists; "next" is its other end.
-fe::Mesh inner() {
-  fe::Mesh mesh = panel(0.8, 2, 3);
-  mesh = fe::with_interface(mesh, "root", fe::rigid(fe::segment(mesh, "x0", 0, 1.0 / 3)));
-  return fe::with_interface(mesh, "next", shapes(mesh, "x1"));
-}
 
 /// "prev" and "tip" at these edges.
 fe::Mesh outer(const std::string& prev = "x0", const std::string& tip = "x1", int along_y = 4) {

@@ -1,43 +1,23 @@
 #include <doctest/doctest.h>
 
 #include <string>
-#include <titop/blocks/fe/interfaces.hpp>
-#include <titop/blocks/fe/plate.hpp>
 #include <titop/blocks/flexible_body.hpp>
 #include <titop/blocks/line_port.hpp>
 #include <titop/compiler/system/system.hpp>
 
+#include "panels.hpp"
 #include "support/mistakes.hpp"
 
 /// Lines of bodies that do not fit each other, or that their modes do not move.
 
 using namespace titop;
+using namespace panels;
 using titop_test::error_of;
 using titop_test::says;
 
 namespace {
 
-constexpr int kPolynomials = 4;
 constexpr double half_pi = 1.5707963267948966;
-
-fe::Mesh panel(double a, int along_x, int along_y) {
-  return plate_mesh({.a = a,
-                     .b = 0.6,
-                     .thickness = 0.004,
-                     .material = {.E = 70e9, .nu = 0.3, .rho = 2700},
-                     .elements = {along_x, along_y}});
-}
-
-fe::Coupling shapes(const fe::Mesh& mesh, const std::string& edge) {
-  return fe::shapes(fe::edge(mesh, edge), fe::legendre(kPolynomials));
-}
-
-/// Held along a part of an edge, so that it bends and twists; "next" is its other end.
-fe::Mesh inner() {
-  fe::Mesh mesh = panel(0.8, 2, 3);
-  mesh = fe::with_interface(mesh, "root", fe::rigid(fe::segment(mesh, "x0", 0, 1.0 / 3)));
-  return fe::with_interface(mesh, "next", shapes(mesh, "x1"));
-}
 
 FlexibleBody body(const fe::Mesh& mesh, const std::string& parent, const std::string& child) {
   return fe::modal_data(mesh, parent, {child});

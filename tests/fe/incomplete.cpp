@@ -8,6 +8,7 @@
 #include <titop/blocks/flexible_body.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 
+#include "boom.hpp"
 #include "dynamics.hpp"
 #include "support/folder.hpp"
 #include "support/refused.hpp"
@@ -15,22 +16,15 @@
 using namespace titop;
 using Eigen::Index;
 using Eigen::MatrixXd;
+using fe_test::boom;
 using fe_test::relative;
 using titop_test::check_refused;
 
 namespace {
 
-/// Two elements: grids 1, 2, 3 at 0, 1, 2 m.
-fe::Mesh beam() {
-  return beam_mesh({.length = 2.0,
-                    .section = rectangle(0.06, 0.04),
-                    .material = {.E = 70e9, .nu = 0.33, .rho = 2700},
-                    .elements = 2});
-}
-
 /// The beam's rows of these components (1 to 6) at grids 1, 2, 3.
 fe::GridMatrices rows(const std::vector<int>& components) {
-  const fe::Mesh mesh = beam();
+  const fe::Mesh mesh = boom(2);
   fe::GridMatrices m{"beam", {}, {}, {}, 15};
   std::vector<Index> kept;
   for (int grid = 1; grid <= 3; ++grid)
@@ -140,7 +134,7 @@ TEST_CASE("a planar model is rigid in the other directions, with the mass that i
   CHECK(FlexibleBody{data}.data().omega.size() == 6);
 
   // Not for grids that merely have no rotations: the body turns there.
-  fe::Mesh solid = beam();
+  fe::Mesh solid = boom(2);
   solid.dofs.erase(solid.dofs.end() - 3, solid.dofs.end());
   solid.K.conservativeResize(15, 15), solid.M.conservativeResize(15, 15);
   check_refused([&] { fe::interface_rows(solid, "C"); }, Code::bad_modes,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "../../examples/by_hand/by_hand.hpp"
+#include "boom.hpp"
 #include "dynamics.hpp"
 #include "support/mistakes.hpp"
 
@@ -19,6 +20,7 @@ using namespace titop;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using fe_test::boom;
 using titop_test::error_of;
 using titop_test::has_name;
 using titop_test::has_names;
@@ -26,16 +28,9 @@ using titop_test::says;
 
 namespace {
 
-fe::Mesh boom() {
-  return beam_mesh({.length = 2.0,
-                    .section = rectangle(0.06, 0.04),
-                    .material = {.E = 70e9, .nu = 0.33, .rho = 2700},
-                    .elements = 4});
-}
-
 /// Masses at the points only, without inertia, as bar elements of FE programs have by default.
 fe::Mesh lumped() {
-  fe::Mesh mesh = boom();
+  fe::Mesh mesh = boom(4);
   mesh.M.setZero();
   for (Index i = 0; i < mesh.M.rows(); ++i)
     if (i % 6 < 3) mesh.M(i, i) = 3.0 + 0.1 * double(i / 6);
@@ -56,7 +51,7 @@ double transfer_error(const fe::Mesh& mesh, const std::vector<std::string>& chil
 }  // namespace
 
 TEST_CASE("rigid motions carry points by rotation about P") {
-  fe::Mesh mesh = boom();
+  fe::Mesh mesh = boom(4);
   mesh.points[2].position = Vector3d(1, 2, 3);
   const MatrixXd R = fe::rigid_motions(mesh, Vector3d(1, 1, 1));
   // P turns by 1 rad/s about x: the point at (0, 1, 2) from it moves by x cross that.
@@ -68,19 +63,19 @@ TEST_CASE("rigid motions carry points by rotation about P") {
 }
 
 TEST_CASE("a mesh that contradicts itself") {
-  fe::Mesh mesh = boom();
+  fe::Mesh mesh = boom(4);
   mesh.K(7, 2) += 1;
   CHECK(says(error_of([&] { check(mesh); }), Code::bad_value, {"K", "beam", "(1.y, P.z)"}));
-  mesh = boom();
+  mesh = boom(4);
   mesh.M.conservativeResize(29, 30);
   CHECK(says(error_of([&] { check(mesh); }), Code::size, {"M", "beam", "29 x 30", "30"}));
-  mesh = boom();
+  mesh = boom(4);
   mesh.M(3, 3) = std::numeric_limits<double>::infinity();
   mesh.points[1].position.y() = std::numeric_limits<double>::quiet_NaN();
   const Error infinite = error_of([&] { check(mesh); });
   CHECK(says(infinite, Code::not_finite, {"M(P.rx, P.rx)", "beam"}));
   CHECK(says(infinite, Code::not_finite, {"point 1", "beam"}));
-  mesh = boom();
+  mesh = boom(4);
   mesh.points[1].name = "C";
   mesh.dofs[8] = mesh.dofs[9];
   const Error twice = error_of([&] { check(mesh); });
@@ -90,7 +85,7 @@ TEST_CASE("a mesh that contradicts itself") {
            !has_name(m.message, "C.rx");
   }));
   CHECK(says(twice, Code::duplicate_name, {"beam", "C.rx"}));
-  mesh = boom();
+  mesh = boom(4);
   mesh.dofs[8] = {9, 2};
   mesh.dofs[9].component = 8;
   mesh.interfaces[0].point = 5;
@@ -101,7 +96,7 @@ TEST_CASE("a mesh that contradicts itself") {
 }
 
 TEST_CASE("names that are not there, or twice, or without six degrees of freedom") {
-  fe::Mesh mesh = boom();
+  fe::Mesh mesh = boom(4);
   const auto refused = [&](const char* parent, const std::vector<std::string>& children,
                            const fe::ModeOptions& options = {}) {
     return error_of([&] { fe::modal_data(mesh, parent, children, options); });
@@ -119,14 +114,14 @@ TEST_CASE("names that are not there, or twice, or without six degrees of freedom
 }
 
 TEST_CASE("a mechanism is named") {
-  fe::Mesh mesh = boom();
+  fe::Mesh mesh = boom(4);
   mesh.K.row(15).setZero();  // torsion of point 2
   mesh.K.col(15).setZero();
   CHECK(
       says(error_of([&] { fe::modal_data(mesh, "P", {"C"}); }), Code::bad_modes, {"beam", "2.rx"}));
   // Cut in the middle: the outer half is loose, K is singular only up to rounding.
-  mesh = boom();
-  const fe::Mesh whole = boom();
+  mesh = boom(4);
+  const fe::Mesh whole = boom(4);
   mesh.K.block(12, 18, 6, 6).setZero();
   mesh.K.block(18, 12, 6, 6).setZero();
   mesh.K.block(12, 12, 6, 6) = whole.K.block(24, 24, 6, 6);
@@ -148,7 +143,7 @@ TEST_CASE("a mechanism is named") {
 }
 
 TEST_CASE("a negative mass is named") {
-  fe::Mesh mesh = boom();
+  fe::Mesh mesh = boom(4);
   mesh.M(14, 14) = -1;
   CHECK(says(error_of([&] { fe::modal_data(mesh, "P", {"C"}); }), Code::bad_modes,
              {"beam", "2.z", "Mesh::digits"}));
@@ -166,7 +161,7 @@ TEST_CASE("massless rotations: refused where a port loads them, condensed elsewh
 }
 
 TEST_CASE("a mass beside its node: singular without a zero on the diagonal") {
-  fe::Mesh mesh = boom();
+  fe::Mesh mesh = boom(4);
   for (const std::size_t point : {1u, 2u, 3u}) {
     const auto first = static_cast<Index>(6 * point);
     mesh.M.middleRows(first, 6).setZero();
@@ -190,7 +185,7 @@ TEST_CASE("massless rotations with few modes and residual vectors") {
 }
 
 TEST_CASE("a child at the parent's own place does not move with the modes") {
-  const ModalData data = fe::modal_data(boom(), "P", {"P", "C"});
+  const ModalData data = fe::modal_data(boom(4), "P", {"P", "C"});
   CHECK(data.children[0].Phi_C.isZero(0));
   CHECK(data.children[0].PC.isZero(0));
 }

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <bit>
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <vector>
+
+#include "raw.hpp"
 
 /// OUTPUT2 as the Nastran manual describes it, in every byte order and word size.
 namespace fe_test {
@@ -96,11 +96,7 @@ class Op2Writer {
   std::size_t word() const { return style_.long_words ? 8 : 4; }
   template <class T>
   std::string raw(T value) const {
-    std::string text(sizeof(T), '\0');
-    std::memcpy(text.data(), &value, sizeof(T));
-    if (style_.big_endian != (std::endian::native == std::endian::big))
-      text = {text.rbegin(), text.rend()};
-    return text;
+    return fe_test::raw(value, style_.big_endian);
   }
 
   Op2Style style_;

@@ -3,7 +3,6 @@
 // examples/data/.../README.md.
 #include <doctest/doctest.h>
 
-#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <functional>
@@ -12,6 +11,7 @@
 #include <titop/graph/error.hpp>
 #include <tuple>
 
+#include "raw.hpp"
 #include "support/folder.hpp"
 #include "support/refused.hpp"
 
@@ -74,11 +74,7 @@ class Writer {
   std::size_t word() const { return style_.long_words ? 8 : 4; }
   template <class T>
   std::string raw(T value) const {
-    std::string text(sizeof(T), '\0');
-    std::memcpy(text.data(), &value, sizeof(T));
-    if (style_.big_endian != (std::endian::native == std::endian::big))
-      text = {text.rbegin(), text.rend()};
-    return text;
+    return fe_test::raw(value, style_.big_endian);
   }
   std::string integer(std::int64_t value) const {
     return style_.long_words ? raw(value) : raw(static_cast<std::int32_t>(value));

@@ -8,6 +8,7 @@
 #include <titop/graph/linalg/symmetric.hpp>
 #include <vector>
 
+#include "boom.hpp"
 #include "dynamics.hpp"
 
 /// Residual vectors: exact statics with few modes, and their benefit under load. All expected
@@ -17,16 +18,10 @@ using namespace titop;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using fe_test::boom;
 using fe_test::relative;
 
 namespace {
-
-fe::Mesh boom() {
-  return beam_mesh({.length = 2.0,
-                    .section = rectangle(0.06, 0.04),
-                    .material = {.E = 70e9, .nu = 0.33, .rho = 2700},
-                    .elements = 12});
-}
 
 fe::Mesh calculix_beam() {
   return fe::read_calculix(fe::calculix_files(TITOP_DATA_DIR "/calculix_beam/beam_free_mat"),
@@ -92,7 +87,7 @@ VectorXd free_omegas(const ModalData& data) {
 }  // namespace
 
 TEST_CASE("statics at C are exact with any number of modes, down to none") {
-  const fe::Mesh mesh = boom();
+  const fe::Mesh mesh = boom(12);
   const Matrix6 exact = flexibility(mesh);
   for (const int kept : {0, 1, 2, 6, 20, 66, 71, 72}) {
     INFO(kept, " kept");
@@ -114,7 +109,7 @@ TEST_CASE("statics at the end of the CalculiX beam") {
 }
 
 TEST_CASE("kept modes stay as they were, all shapes M- and K-orthonormal") {
-  const fe::Mesh mesh = boom();
+  const fe::Mesh mesh = boom(12);
   std::vector<std::string> everywhere = {"C"};
   for (int i = 1; i < 12; ++i) everywhere.push_back(std::to_string(i));
   const fe::ModeOptions options{.kept = 5, .residual = {"C", "P", "6"}};
@@ -134,7 +129,7 @@ TEST_CASE("kept modes stay as they were, all shapes M- and K-orthonormal") {
 }
 
 TEST_CASE("residual vectors of neighbours, nearly the same, stay orthonormal") {
-  const fe::Mesh mesh = boom();
+  const fe::Mesh mesh = boom(12);
   std::vector<std::string> everywhere = {"C"};
   for (int i = 1; i < 12; ++i) everywhere.push_back(std::to_string(i));
   const ModalData data = fe::modal_data(mesh, "P", everywhere,
@@ -149,7 +144,7 @@ TEST_CASE("residual vectors of neighbours, nearly the same, stay orthonormal") {
 }
 
 TEST_CASE("a loaded cantilever: 2 modes and 6 residual vectors beat 12 and 24 modes") {
-  const fe::Mesh mesh = boom();
+  const fe::Mesh mesh = boom(12);
   const VectorXd exact = loaded_omegas(mesh);
   const auto worst_of_4 = [&](const fe::ModeOptions& options) {
     const VectorXd omega = loaded_omegas(fe::modal_data(mesh, "P", {"C"}, options));
@@ -167,7 +162,7 @@ TEST_CASE("a loaded cantilever: 2 modes and 6 residual vectors beat 12 and 24 mo
 }
 
 TEST_CASE("a released parent: its residual vectors help the free modes") {
-  const fe::Mesh mesh = boom();
+  const fe::Mesh mesh = boom(12);
   const VectorXd all = eigh(mesh.K, mesh.M).lambda;
   const double exact = std::sqrt(all(6));
   const auto error = [&](const fe::ModeOptions& options) {
@@ -179,7 +174,7 @@ TEST_CASE("a released parent: its residual vectors help the free modes") {
 }
 
 TEST_CASE("damping: one for all, one per kept mode, one for each") {
-  const fe::Mesh mesh = boom();
+  const fe::Mesh mesh = boom(12);
   const auto xi = [&](std::vector<double> given) {
     return fe::modal_data(mesh, "P", {"C"}, {.kept = 2, .residual = {"C"}, .xi = given}).xi;
   };

@@ -10,6 +10,7 @@
 #include <titop/blocks/fe/op4.hpp>
 #include <titop/graph/error.hpp>
 
+#include "boom.hpp"
 #include "dynamics.hpp"
 #include "support/folder.hpp"
 #include "support/names.hpp"
@@ -18,19 +19,12 @@
 using namespace titop;
 using Eigen::Index;
 using Eigen::MatrixXd;
+using fe_test::boom;
 using fe_test::relative;
 using titop_test::check_refused;
 using titop_test::Folder;
 
 namespace {
-
-/// Two elements: grids 1, 2, 3 at 0, 1, 2 m.
-fe::Mesh beam() {
-  return beam_mesh({.length = 2.0,
-                    .section = rectangle(0.06, 0.04),
-                    .material = {.E = 70e9, .nu = 0.33, .rho = 2700},
-                    .elements = 2});
-}
 
 /// One matrix of a text OP4, dense, in the format 1P,3E22.15.
 std::string op4(const std::string& name, const MatrixXd& S, int type = 2) {
@@ -58,7 +52,7 @@ const std::vector<fe::Grid> kGrids = {
 }  // namespace
 
 TEST_CASE("matrices asymmetric by a reduction's rounding are symmetrised, with fewer digits") {
-  const fe::Mesh exact = beam();
+  const fe::Mesh exact = boom(2);
   MatrixXd K = exact.K;
   const double off = 1e-12 * std::sqrt(K(1, 1) * K(11, 11));
   K(1, 11) += off;
@@ -83,7 +77,7 @@ TEST_CASE("matrices asymmetric by a reduction's rounding are symmetrised, with f
 }
 
 TEST_CASE("one triangle, or half the digits, is no rounding of a reduction") {
-  const fe::Mesh exact = beam();
+  const fe::Mesh exact = boom(2);
   MatrixXd K = exact.K;
   K(1, 11) += 1e-6 * std::sqrt(K(1, 1) * K(11, 11));
   check_refused([&] { fe::to_mesh(read(op4("KAA", K) + op4("MAA", exact.M)), kGrids); },

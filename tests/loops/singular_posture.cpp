@@ -4,49 +4,16 @@
 #include <numbers>
 #include <titop/titop.hpp>
 
+#include "support/four_bar.hpp"
 #include "support/notes.hpp"
 
 /// Singular postures are distinguished from redundantly closed chains that still move.
 
 using namespace titop;
+using titop_test::FourBar;
+using titop_test::parallelogram;
 
 namespace {
-
-struct FourBar {
-  double crank, coupler, rocker;     ///< lengths [m]
-  double crank_angle, rocker_angle;  ///< from x [rad]
-  Vector3d base;                     ///< of the rocker
-};
-
-/// In the plane z = 0 from the origin; the coupler is along x. Springs on the crank.
-Diagram diagram(const FourBar& f) {
-  Diagram d{"four_bar"};
-  const Vector3d z(0, 0, 1);
-  auto base = d.add("base", RigidBody{.children = {{"A"}, {"D", f.base}}});
-  ground(base);
-  const auto link = [&](const char* name, double length, double mass) {
-    return d.add(name, RigidBody{.mass = mass,
-                                 .inertia = {0.1, 0.1, 0.1},
-                                 .PA = {length / 2, 0, 0},
-                                 .children = {{"C", {length, 0, 0}}}});
-  };
-  auto crank = link("crank", f.crank, 2), coupler = link("coupler", f.coupler, 3),
-       rocker = link("rocker", f.rocker, 2);
-  auto a = hinge(d, "a", crank, base.child("A"), Rotation::about(z, f.crank_angle), z);
-  a.torque = 5 * a.angle - d.input("u");
-  hinge(d, "b", coupler, crank.child, Rotation::about(z, -f.crank_angle), z).torque = 0;
-  auto c = hinge(d, "c", rocker, base.child("D"), Rotation::about(z, f.rocker_angle), z);
-  c.torque = 0;
-  auto end = d.add("end", Hinge{z});
-  mount(end, rocker.child, Rotation::about(z, -f.rocker_angle));
-  weld(coupler.child, end.child);
-  end.torque = 0;
-  d.output("crank") = a.angle;
-  d.output("rocker") = c.angle;
-  return d;
-}
-
-FourBar parallelogram(double angle) { return {0.3, 1, 0.3, angle, angle, {1, 0, 0}}; }
 
 /// True if the log warns of a singular posture: a warning on chains without the tolerance of their
 /// rank.

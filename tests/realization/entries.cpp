@@ -3,12 +3,13 @@
 
 #include <cmath>
 #include <limits>
+#include <titop/blocks/spring_mass.hpp>
 #include <titop/compiler/system/system.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/mount.hpp>
 
 #include "generate/diagrams/modes.hpp"
-#include "solve/oracle.hpp"
+#include "solve/flexible_chain.hpp"
 #include "support/rng.hpp"
 
 /// The entries of the dense A of well-conditioned scenes, one by one, against 150 digits.
@@ -75,30 +76,18 @@ double ulps(double found, const Real& exact) {
   return std::abs(static_cast<double>(Real(found) - exact)) / ulp;
 }
 
-/// Chain of flexible bodies with six modes, free root.
-struct Chain {
-  std::vector<ModalData> data;
-  std::vector<Matrix3d> T;
-
+/// Chain of flexible bodies with six modes.
+struct Chain : FlexibleChain {
   Chain(std::uint64_t seed, int n) {
     Rng rng(seed);
     for (int i = 0; i < n; ++i) {
-      data.push_back(titop::generate::random_modes(rng, 6, {"C"}, true));
-      T.push_back(Rotation::matrix(rng.rotation()).nominal());
+      ModalData body = titop::generate::random_modes(rng, 6, {"C"}, true);
+      add(std::move(body), Rotation::matrix(rng.rotation()));
     }
   }
   StateSpace written() const {
-    Diagram d{"chain"};
-    auto U = d.input("U", 6);
-    std::vector<BodyHandle> body;
-    for (std::size_t i = 0; i < data.size(); ++i)
-      body.push_back(d.add(fmt::format("b{}", i + 1), FlexibleBody(data[i])));
-    body.front().parent.force = -U;
-    for (std::size_t i = 1; i < body.size(); ++i)
-      mount(body[i], body[i - 1].child, Rotation::matrix(T[i - 1]));
-    d.output("tip", 6) = body.back().child.accel;
     StateSpace model;
-    compile(d, {.minimize_up_to = 0}).write(model);
+    compile(diagram(), {.minimize_up_to = 0}).write(model);
     return model;
   }
   /// The part of the eta'' rows and eta columns: -(M^-1) diag(omega^2), M over [x_P of the root;

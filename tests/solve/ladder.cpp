@@ -2,13 +2,14 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <titop/blocks/fe/scaled.hpp>
 #include <titop/compiler/system/system.hpp>
 #include <titop/graph/mount.hpp>
 #include <titop/graph/nodes/gain.hpp>
 #include <titop/graph/nodes/lti.hpp>
 
 #include "generate/diagrams/modes.hpp"
-#include "oracle.hpp"
+#include "solve/flexible_chain.hpp"
 #include "support/mistakes.hpp"
 #include "support/rng.hpp"
 
@@ -20,35 +21,15 @@ using titop_test::Rng;
 
 namespace {
 
-/// Five flexible bodies, every second one a million times lighter; with the oracle's answer.
-struct Chain {
-  std::vector<ModalData> data;
-
-  Chain() {
-    Rng rng(7);
-    for (int i = 0; i < 5; ++i)
-      data.push_back(titop::scaled(titop::generate::random_modes(rng, 6, {"C"}, true),
-                                   {.mass = i % 2 ? 1e-6 : 1}));
-  }
-  Diagram diagram() const {
-    Diagram d{"chain"};
-    const auto U = d.input("U", 6);
-    std::vector<BodyHandle> body;
-    for (std::size_t i = 0; i < data.size(); ++i)
-      body.push_back(d.add(fmt::format("b{}", i + 1), FlexibleBody(data[i])));
-    body.front().parent.force = -U;
-    for (std::size_t i = 1; i < body.size(); ++i) mount(body[i], body[i - 1].child);
-    d.output("root", 6) = body.front().parent.accel;
-    d.output("tip", 6) = body.back().child.accel;
-    return d;
-  }
-  Eigen::MatrixXcd exact(std::complex<double> s) const {
-    std::vector<BigMatrix> Y;
-    for (const ModalData& body : data) Y.push_back(modal_transfer(body, Complex(s)));
-    return rounded(chain_transfer(
-        Y, std::vector<BigMatrix>(data.size() - 1, BigMatrix(Eigen::MatrixXd::Identity(6, 6))), 6));
-  }
-};
+/// Five flexible bodies, every second one a million times lighter.
+FlexibleChain five_bodies() {
+  FlexibleChain chain;
+  Rng rng(7);
+  for (int i = 0; i < 5; ++i)
+    chain.add(titop::scaled(titop::generate::random_modes(rng, 6, {"C"}, true),
+                            {.mass = i % 2 ? 1e-6 : 1}));
+  return chain;
+}
 
 /// Largest difference in a block of 3 x 3 over its largest entry.
 double block_error(const Eigen::MatrixXcd& a, const Eigen::MatrixXcd& b) {
@@ -60,7 +41,7 @@ double block_error(const Eigen::MatrixXcd& a, const Eigen::MatrixXcd& b) {
   return worst;
 }
 
-double worst_of(const System& system, const Chain& chain, Precision precision) {
+double worst_of(const System& system, const FlexibleChain& chain, Precision precision) {
   double worst = 0;
   for (const std::complex<double> s : {std::complex<double>(0.1, 0.6), {0.8, 5}, {5, 33}})
     worst = std::max(worst, block_error(system.transfer(s, precision), chain.exact(s)));
@@ -70,7 +51,7 @@ double worst_of(const System& system, const Chain& chain, Precision precision) {
 }  // namespace
 
 TEST_CASE("precision: each step of the ladder is as good as its digits") {
-  const Chain chain;
+  const FlexibleChain chain = five_bodies();
   const System system = compile(chain.diagram());
   const double standard = worst_of(system, chain, Precision::standard);
   const double refined = worst_of(system, chain, Precision::refined);

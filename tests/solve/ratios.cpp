@@ -2,12 +2,14 @@
 #include <fmt/format.h>
 
 #include <titop/blocks/fe/beam.hpp>
+#include <titop/blocks/fe/scaled.hpp>
+#include <titop/blocks/spring_mass.hpp>
 #include <titop/compiler/system/system.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/mount.hpp>
 
 #include "generate/diagrams/modes.hpp"
-#include "oracle.hpp"
+#include "solve/flexible_chain.hpp"
 #include "support/rng.hpp"
 
 /// Bodies of very different mass in one chain, against 150 digits: the factors keep them at every
@@ -25,10 +27,7 @@ const std::vector<std::complex<double>> kPoints = {{0.1, 0.6}, {0.8, 5}, {5, 33}
 double scale(int body, double ratio) { return body % 2 ? ratio : 1; }
 
 /// Error of [xdd at the root; xdd at the tip] by the wrench at the root.
-struct Flexible {
-  std::vector<ModalData> data;
-  std::vector<Matrix3d> T;
-
+struct Flexible : FlexibleChain {
   enum class Modes {
     independent,  ///< the six modes move C in six orthogonal ways
     random,       ///< Phi_C is random, of condition 10 to 1000
@@ -44,33 +43,8 @@ struct Flexible {
         const Eigen::MatrixXd Q = Eigen::HouseholderQR<Eigen::MatrixXd>(Phi_C).householderQ();
         Phi_C = Q / std::sqrt(one.D_P(0, 0));
       }
-      data.push_back(titop::scaled(one, {.mass = scale(i, ratio)}));
-      // As `Rotation` will store it: it repairs the last digit.
-      T.push_back(Rotation::matrix(rng.rotation()).nominal());
+      add(titop::scaled(one, {.mass = scale(i, ratio)}), Rotation::matrix(rng.rotation()));
     }
-  }
-  Diagram diagram() const {
-    Diagram d{"chain"};
-    const auto U = d.input("U", 6);
-    std::vector<BodyHandle> body;
-    for (std::size_t i = 0; i < data.size(); ++i)
-      body.push_back(d.add(fmt::format("b{}", i + 1), FlexibleBody(data[i])));
-    body.front().parent.force = -U;
-    for (std::size_t i = 1; i < body.size(); ++i)
-      mount(body[i], body[i - 1].child, Rotation::matrix(T[i - 1]));
-    d.output("root", 6) = body.front().parent.accel;
-    d.output("tip", 6) = body.back().child.accel;
-    return d;
-  }
-  Eigen::MatrixXcd exact(std::complex<double> s) const {
-    std::vector<BigMatrix> Y, rotations;
-    for (const ModalData& body : data) Y.push_back(modal_transfer(body, Complex(s)));
-    for (const Matrix3d& t : T) {
-      Eigen::MatrixXd both = Eigen::MatrixXd::Zero(6, 6);
-      both.topLeftCorner(3, 3) = both.bottomRightCorner(3, 3) = t;
-      rotations.emplace_back(both);
-    }
-    return rounded(chain_transfer(Y, rotations, 6));
   }
 };
 

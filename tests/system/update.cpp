@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <titop/titop.hpp>
 
+#include "distance.hpp"
 #include "support/close.hpp"
 #include "support/mistakes.hpp"
 #include "support/rng.hpp"
@@ -54,11 +55,7 @@ double distance(const System& a, const System& b) {
   StateSpace m, n;
   a.write(m);
   b.write(n);
-  double worst = 0;
-  for (const auto& [x, y] :
-       {std::pair(&m.A, &n.A), std::pair(&m.B, &n.B), std::pair(&m.C, &n.C), std::pair(&m.D, &n.D)})
-    worst = std::max(worst, (*x - *y).cwiseAbs().maxCoeff() / y->cwiseAbs().maxCoeff());
-  return worst;
+  return titop_test::distance(m, n);
 }
 
 }  // namespace

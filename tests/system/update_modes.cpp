@@ -4,6 +4,7 @@
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/titop.hpp>
 
+#include "distance.hpp"
 #include "support/close.hpp"
 #include "support/mistakes.hpp"
 
@@ -92,13 +93,7 @@ MatrixXcd by_hand(const Numbers& n, std::complex<double> s) {
 }
 
 double distance(const System& a, const System& b) {
-  const StateSpace& m = a.state_space();
-  const StateSpace& n = b.state_space();
-  double worst = 0;
-  for (const auto& [x, y] :
-       {std::pair(&m.A, &n.A), std::pair(&m.B, &n.B), std::pair(&m.C, &n.C), std::pair(&m.D, &n.D)})
-    worst = std::max(worst, (*x - *y).cwiseAbs().maxCoeff() / y->cwiseAbs().maxCoeff());
-  return worst;
+  return titop_test::distance(a.state_space(), b.state_space());
 }
 
 }  // namespace
