@@ -31,7 +31,7 @@ std::string variable_name(const Factored& d, int variable) {
 /// The largest margin of a loop, and the loops whose margins are not computed.
 void take_margins(const Factored& d, std::span<const double> margins, Check& check) {
   Certificate& c = check.certificate;
-  const LoopMargins found = judge_margins(d.skeleton->stage, margins);
+  const WellPosedness found = judge_margins(d.skeleton->stage, margins);
   c.margin = found.largest;
   if (found.largest_loop >= 0)
     c.margin_where =

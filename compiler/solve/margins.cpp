@@ -174,8 +174,8 @@ void update_margins(Factored& d) {
   d.changed_loops.clear();
 }
 
-LoopMargins judge_margins(const Stage& stage, std::span<const double> margins) {
-  LoopMargins result;
+WellPosedness judge_margins(const Stage& stage, std::span<const double> margins) {
+  WellPosedness result;
   for (std::size_t i = 0; i < stage.loops.size(); ++i) {
     if (stage.loops[i].unknowns > kMarginUpTo) {
       ++result.too_large;

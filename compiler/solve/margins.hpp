@@ -16,7 +16,7 @@ void find_margins(const Factored& data, std::span<const int> loops, std::vector<
 void update_margins(Factored& data);
 
 /// Summary of the margins of all loops of the stage.
-struct LoopMargins {
+struct WellPosedness {
   double largest = 1;
   int largest_loop = -1;    ///< whose margin it is; -1: none exceeds 1
   int without_digit = -1;   ///< the first loop without a digit in double, by its margin, or without
@@ -24,7 +24,7 @@ struct LoopMargins {
   int without_inverse = 0;  ///< number of loops
   int too_large = 0;        ///< number of loops, of more than kMarginUpTo unknowns
 };
-LoopMargins judge_margins(const Stage& stage, std::span<const double> margins);
+WellPosedness judge_margins(const Stage& stage, std::span<const double> margins);
 
 /// Unknowns of a loop; above it a dense inverse costs too much.
 inline constexpr int kMarginUpTo = 120;

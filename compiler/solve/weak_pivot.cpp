@@ -57,7 +57,7 @@ std::vector<int> signals_without_digit(const Factored& d) {
 WeakPivots judge_weak_pivots(const Factored& d, std::span<const double> margins) {
   const Skeleton& k = *d.skeleton;
   const double weakest = d.factors->health().weakest;
-  const LoopMargins loops = judge_margins(k.stage, margins);
+  const WellPosedness loops = judge_margins(k.stage, margins);
   if (!(weakest < kFewDigits || loops.largest > 10 / kFewDigits || loops.without_digit >= 0 ||
         large_loop_in_doubt(d)))
     return {};
