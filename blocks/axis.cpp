@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <titop/blocks/axis.hpp>
 #include <titop/graph/error.hpp>

@@ -2,6 +2,7 @@
 #include <limits>
 #include <numeric>
 #include <titop/analysis/reduction/oscillators.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/linalg/similarity_scaling.hpp>
