@@ -18,6 +18,7 @@ class BulkReader {
   explicit BulkReader(const TextFile& file) : file_(file) {
     require_text(file);
     for (BulkCard& card : detail::bulk_cards(file)) sort(std::move(card));
+    for (const auto& [id, card] : grid_cards_) systems_.grids[id] = grid_card(card);
     for (const auto& [id, card] : grid_cards_) place(id, card);
     if (grids_.empty() && mistakes_.empty())
       mistakes_.add(bad_line(file_, 0, "no GRID",
@@ -55,8 +56,14 @@ class BulkReader {
 
   /// The last one of those that are read and must be there.
   static std::size_t last_field(const BulkCard& card) {
-    if (card.name == "CORD2R") return 8;
+    if (card.name.starts_with("CORD2")) return 8;
+    if (card.name.starts_with("CORD1")) return 3;
     return card.name == "GRID" && !card.mark.empty() ? 4 : 0;
+  }
+
+  detail::GridCard grid_card(const BulkCard& card) {
+    const int in = integer(card, 1), moves = integer(card, 5);
+    return {in, point(card, 2), moves};
   }
 
   void sort(BulkCard card) {
@@ -71,34 +78,49 @@ class BulkReader {
     if (card.fields.size() <= last_field(card))
       mistakes_.add(bad_line(file_, card.line, fmt::format("no continuation of {}", card.name),
                              "it right behind its line"));
-    const int id = integer(card, 0);
-    if (id < 1) return mistake(card, card.field(0), "a number above 0");
-    const auto [at, is_new] = (grid ? grid_cards_ : system_cards_).insert({id, card});
+    add(card, 0, grid ? grid_cards_ : system_cards_);
+    // A second system in the same card.
+    if (card.name.starts_with("CORD1") && !card.field(4).empty()) add(card, 4, system_cards_);
+  }
+
+  /// The card whose number is in this field.
+  void add(const BulkCard& card, std::size_t first, std::map<int, BulkCard>& cards) {
+    const int id = integer(card, first);
+    if (id < 1) return mistake(card, card.field(first), "a number above 0");
+    const auto [at, is_new] = cards.insert({id, card});
     if (!is_new && (at->second.fields != card.fields || at->second.name != card.name))
-      mistake(card, card.field(0),
+      mistake(card, card.field(first),
               fmt::format("the data of line {}, or another number", at->second.line));
-    if (!is_new || grid) return;
-    if (card.name == "CORD2R")
-      systems_.rectangular[id] = {integer(card, 1), point(card, 2), point(card, 5), point(card, 8)};
-    else
+    if (is_new && card.name != "GRID") add_system(card, first, id);
+  }
+
+  void add_system(const BulkCard& card, std::size_t first, int id) {
+    using detail::SystemKind;
+    static const std::map<char, SystemKind> kinds = {{'R', SystemKind::rectangular},
+                                                     {'C', SystemKind::cylindrical},
+                                                     {'S', SystemKind::spherical}};
+    const auto kind = card.name.size() == 6 ? kinds.find(card.name[5]) : kinds.end();
+    if (kind == kinds.end() || (card.name[4] != '1' && card.name[4] != '2')) {
       systems_.others[id] = card.name;
+      return;
+    }
+    detail::SystemCard& system = systems_.systems[id];
+    system.kind = kind->second;
+    if (card.name[4] == '1') {
+      system.grids = {integer(card, first + 1), integer(card, first + 2), integer(card, first + 3)};
+      return;
+    }
+    system.in = integer(card, 1);
+    for (std::size_t i = 0; i < 3; ++i) system.points.at(i) = point(card, 2 + 3 * i);
   }
 
   void place(int id, const BulkCard& card) {
-    const detail::Axes* in = system(card, integer(card, 1));
-    const detail::Axes* moves = system(card, integer(card, 5));
-    const Vector3d p = point(card, 2);
-    if (in && moves) grids_.push_back(detail::placed_grid(id, p, *in, *moves));
-  }
-
-  /// Null, with a mistake noted, for one that is not there.
-  const detail::Axes* system(const BulkCard& user, int id) {
     std::string why;
-    const detail::Axes* axes = systems_.find(id, why);
-    if (!axes)
-      mistakes_.add(bad_line(file_, user.line, why,
-                             "a CORD2R, relative to another one or to the basic system"));
-    return axes;
+    if (const auto grid = systems_.place(id, why))
+      grids_.push_back(*grid);
+    else
+      mistakes_.add(bad_line(file_, card.line, why,
+                             "a CORD1R, CORD1C, CORD1S, CORD2R, CORD2C or CORD2S in this file"));
   }
 
   const TextFile& file_;
@@ -110,9 +132,10 @@ class BulkReader {
 
 }  // namespace
 
+std::vector<Grid> detail::grids_in(const TextFile& file) { return BulkReader(file).grids(); }
+
 std::vector<Grid> read_grids(const std::filesystem::path& path) {
-  const TextFile file = read_text(path);
-  return BulkReader(file).grids();
+  return detail::grids_in(read_text(path));
 }
 
 }  // namespace titop::fe

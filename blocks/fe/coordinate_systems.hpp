@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <titop/blocks/fe/grids.hpp>
@@ -8,34 +10,59 @@
 /// Coordinate systems of Nastran. For the folder's own files.
 namespace titop::fe::detail {
 
-/// A coordinate system: its origin, and its axes as columns, in the basic frame.
-struct Axes {
-  Vector3d origin = Vector3d::Zero();
-  Matrix3d columns = Matrix3d::Identity();
+/// Coordinates of a point: x, y, z; r, theta, z; r, theta from z, phi. Angles in degrees.
+enum class SystemKind { rectangular, cylindrical, spherical };
+
+/// CORD2R, CORD2C, CORD2S: A the origin, B on z, C in the x-z plane. CORD1R, CORD1C, CORD1S: grids
+/// there.
+struct SystemCard {
+  SystemKind kind = SystemKind::rectangular;
+  int in = 0;                           ///< the system of the points' coordinates
+  std::array<Vector3d, 3> points = {};  ///< A, B, C
+  std::optional<std::array<int, 3>> grids = {};
 };
 
-/// CORD2R, points in the system `in`: A the origin, B on z, C in the x-z plane.
-struct Cord2r {
-  int in = 0;
-  Vector3d A, B, C;
+/// GRID.
+struct GridCard {
+  int in = 0;  ///< the system of its coordinates
+  Vector3d point = Vector3d::Zero();
+  int moves = 0;  ///< the system of its displacements
 };
 
-/// Rectangular systems, each relative to another or to the basic one, 0.
+/// Grids and the systems that they refer to; 0 is the basic system. Of a cylindrical or spherical
+/// system the displacement frame of a grid has the directions of its coordinates there, on the axis
+/// z x, y, z.
 class CoordinateSystems {
  public:
-  std::map<int, Cord2r> rectangular;
-  std::map<int, std::string> others;  ///< names of cards of other kinds, "CORD2C"
+  std::map<int, SystemCard> systems;
+  std::map<int, GridCard> grids;
+  std::map<int, std::string> others;  ///< names of cards of other kinds, "CORD3G"
 
-  /// Null, and the reason in `why`, for one that is not there, of another kind, that refers to
-  /// itself or over more than 1000 others to the basic one, or whose points are on a line.
-  const Axes* find(int id, std::string& why);
+  /// Nothing, and the reason in `why`, for a grid or a system that is not there, a system of
+  /// another kind, that refers to itself or over more than 1000 others to the basic one, or whose
+  /// points are on a line.
+  std::optional<Grid> place(int id, std::string& why);
 
  private:
+  /// Origin, and axes as columns, in the basic frame.
+  struct Axes {
+    SystemKind kind = SystemKind::rectangular;
+    Vector3d origin = Vector3d::Zero();
+    Matrix3d columns = Matrix3d::Identity();
+
+    Vector3d position(const Vector3d& coordinates) const;
+    Matrix3d directions(const Vector3d& position) const;
+  };
+  const Axes* find(int id, std::string& why);
+  /// A, and the vectors from it to B and C, in the basic frame.
+  struct Corner {
+    Vector3d A, AB, AC;
+  };
+  std::optional<Corner> by_points(const SystemCard& card, std::string& why);
+  std::optional<Corner> by_grids(int id, const std::array<int, 3>& numbers, std::string& why);
+
   std::map<int, Axes> found_ = {{0, Axes{}}};
   std::set<int> open_;  ///< systems that are being defined
 };
-
-/// The grid at this point of the system `in`, with displacements in the system `moves`.
-Grid placed_grid(int id, const Vector3d& point, const Axes& in, const Axes& moves);
 
 }  // namespace titop::fe::detail

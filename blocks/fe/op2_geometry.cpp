@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <titop/blocks/fe/coordinate_systems.hpp>
 #include <titop/blocks/fe/op2_results.hpp>
 #include <titop/graph/error.hpp>
@@ -11,21 +12,22 @@ namespace titop::fe {
 
 namespace {
 
+/// A record's first three words tell its card.
 using Key = std::array<long long, 3>;
-constexpr Key kGrid = {4501, 45, 1}, kGridDouble = {4501, 45, 1120001}, kCord2r = {2101, 21, 8},
-              kCord2rDouble = {2101, 21, 220};
 
-/// Other kinds of coordinate systems.
-const char* other_system(const Key& key) {
-  switch (key[0]) {
-    case 1701: return "CORD1C";
-    case 1801: return "CORD1R";
-    case 1901: return "CORD1S";
-    case 2001: return "CORD2C";
-    case 2201: return "CORD2S";
-    default: return nullptr;
+/// CORD1C, CORD1R, CORD1S by grids; CORD2C, CORD2R, CORD2S by points.
+std::optional<detail::SystemKind> system_kind(long long code) {
+  switch (code) {
+    case 1801:
+    case 2101: return detail::SystemKind::rectangular;
+    case 1701:
+    case 2001: return detail::SystemKind::cylindrical;
+    case 1901:
+    case 2201: return detail::SystemKind::spherical;
+    default: return std::nullopt;
   }
 }
+constexpr long long kGrid = 4501, kFirstByPoints = 2001;
 
 [[noreturn]] void refuse(const Op2File& file, const std::string& found, const char* hint) {
   throw Error(Code::bad_file, fmt::format("{}: {}", file.name, found), hint);
@@ -63,54 +65,68 @@ class Entries {
   std::size_t at_ = 0;
 };
 
-struct GridCard {
-  int in = 0, moves = 0;
-  Vector3d point;
-};
-
 int number(const Op2File& file, long long value) {
   if (value < -2'000'000'000 || value > 2'000'000'000)
     refuse(file, fmt::format("GEOM1 has the number {}", value), "");
   return static_cast<int>(value);
 }
 
+/// Reals have two words of 4 bytes each where that alone makes whole entries, or where it does,
+/// too, and the third word of the key is not that of single precision.
+bool is_wide(const Op2File& file, std::size_t words, std::size_t narrow, std::size_t reals,
+             bool narrow_key) {
+  if (file.layout.word == 8) return true;
+  const bool fits = words % narrow == 0, fits_wide = words % (narrow + reals) == 0;
+  if (!fits && !fits_wide)
+    refuse(file, fmt::format("GEOM1 has {} words of entries of {}", words, narrow),
+           "the file may be truncated");
+  return fits_wide && !(fits && narrow_key);
+}
+
+/// Cards of GEOM1.
 struct Geometry {
-  std::map<int, GridCard> grids;
   detail::CoordinateSystems systems;
 
   void read(const Op2File& file, const std::string& record) {
     Entries entries(file, record);
-    if (record.size() < 3 * file.layout.word) return;
+    const std::size_t words = record.size() / file.layout.word;
+    if (words < 3) return;
     Key key{};
     for (long long& k : key) k = entries.integer();
-    const bool wide = key == kGridDouble || key == kCord2rDouble;
-    if (key == kGrid || key == kGridDouble) {
+    if (key[0] == kGrid) {
+      const bool wide = is_wide(file, words - 3, 8, 3, key[2] == 1);
       while (!entries.at_end()) read_grid(file, entries, wide);
-    } else if (key == kCord2r || key == kCord2rDouble) {
-      while (!entries.at_end()) read_cord2r(file, entries, wide);
-    } else if (const char* name = other_system(key); name && !entries.at_end()) {
-      systems.others[number(file, entries.integer())] = name;
+    } else if (const auto kind = system_kind(key[0]); kind && key[0] >= kFirstByPoints) {
+      const bool wide = is_wide(file, words - 3, 13, 9, key[2] >= 8 && key[2] <= 10);
+      while (!entries.at_end()) read_by_points(file, entries, *kind, wide);
+    } else if (kind) {
+      while (!entries.at_end()) read_by_grids(file, entries, *kind);
     }
   }
 
  private:
   void read_grid(const Op2File& file, Entries& entries, bool wide) {
     const int id = number(file, entries.integer());
-    GridCard card;
+    detail::GridCard card;
     card.in = number(file, entries.integer());
     card.point = entries.point(wide);
     card.moves = number(file, entries.integer());
-    entries.integer(), entries.integer();   // constraints, superelement
-    if (card.moves >= 0) grids[id] = card;  // -1: a point of a fluid
+    entries.integer(), entries.integer();           // constraints, superelement
+    if (card.moves >= 0) systems.grids[id] = card;  // -1: a point of a fluid
   }
-  void read_cord2r(const Op2File& file, Entries& entries, bool wide) {
-    const int id = number(file, entries.integer());
-    entries.integer(), entries.integer();  // its kind
-    detail::Cord2r& system = systems.rectangular[id];
+  void read_by_points(const Op2File& file, Entries& entries, detail::SystemKind kind, bool wide) {
+    detail::SystemCard& system = systems.systems[number(file, entries.integer())];
+    system.kind = kind;
+    entries.integer(), entries.integer();  // its kind, 2
     system.in = number(file, entries.integer());
-    system.A = entries.point(wide);
-    system.B = entries.point(wide);
-    system.C = entries.point(wide);
+    for (Vector3d& point : system.points) point = entries.point(wide);
+  }
+  void read_by_grids(const Op2File& file, Entries& entries, detail::SystemKind kind) {
+    detail::SystemCard& system = systems.systems[number(file, entries.integer())];
+    system.kind = kind;
+    entries.integer(), entries.integer();  // its kind, 1
+    system.grids.emplace();
+    for (int& grid : *system.grids) grid = number(file, entries.integer());
   }
 };
 
@@ -121,15 +137,16 @@ std::vector<Grid> op2_grids(const Op2File& file) {
   for (const Op2Table& table : file.tables)
     if (table.name == "GEOM1" || table.name == "GEOM1S" || table.name == "GEOM1N")
       for (std::size_t i = 1; i < table.records.size(); ++i) geometry.read(file, table.records[i]);
-  if (geometry.grids.empty())
+  if (geometry.systems.grids.empty())
     refuse(file, "it has no table GEOM1 with grids", "write PARAM,POSTEXT,YES in the bulk data");
   std::vector<Grid> grids;
   std::string why;
-  for (const auto& [id, card] : geometry.grids) {
-    const detail::Axes* in = geometry.systems.find(card.in, why);
-    const detail::Axes* moves = in ? geometry.systems.find(card.moves, why) : nullptr;
-    if (!moves) refuse(file, fmt::format("grid {}: {}", id, why), "write its system as a CORD2R");
-    grids.push_back(detail::placed_grid(id, card.point, *in, *moves));
+  for (const auto& [id, card] : geometry.systems.grids) {
+    const auto grid = geometry.systems.place(id, why);
+    if (!grid)
+      refuse(file, fmt::format("grid {}: {}", id, why),
+             "write its system as a CORD1R, CORD1C, CORD1S, CORD2R, CORD2C or CORD2S");
+    grids.push_back(*grid);
   }
   return grids;
 }

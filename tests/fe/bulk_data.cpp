@@ -2,6 +2,7 @@
 // systems, the real .asm, and refusals.
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <titop/blocks/fe/bulk_data.hpp>
 #include <titop/graph/error.hpp>
 
@@ -69,12 +70,59 @@ TEST_CASE("the boundary grids of the superelement") {
   CHECK(grids[3].frame.is_identity());
 }
 
+TEST_CASE("cylindrical and spherical systems: positions and directions of displacements") {
+  // System 5 is that of kText's 3: its x, y, z along the basic y, z, x, from (0, 0, 2).
+  const std::string card = ",5,0,0.,0.,2.,1.,0.,2.,+A\n+A,0.,1.,2.\n";
+  const auto in_basic = [](double x, double y, double z) { return Vector3d(z, x, 2 + y); };
+  // r = 2, theta = 30 degrees, z = 5.
+  const fe::Grid c = read("CORD2C" + card + "GRID,1,5,2.,30.,5.,5\n")[0];
+  const double s3 = std::sqrt(3);
+  CHECK((c.position - in_basic(s3, 1, 5)).norm() <= 1e-15 * 6);
+  Matrix3d T;
+  T << in_basic(s3 / 2, 0.5, 0), in_basic(-0.5, s3 / 2, 0), in_basic(0, 0, 1);
+  T.row(2).array() -= 2;
+  CHECK((c.frame.nominal() - T).cwiseAbs().maxCoeff() <= 1e-15);
+  // r = 2, theta = 60 degrees from z, phi = 30 degrees.
+  const fe::Grid s = read("CORD2S" + card + "GRID,1,5,2.,60.,30.,5\n")[0];
+  CHECK((s.position - in_basic(1.5, s3 / 2, 1)).norm() <= 1e-15 * 4);
+  T << in_basic(0.75, s3 / 4, 0.5), in_basic(s3 / 4, 0.25, -s3 / 2), in_basic(-0.5, s3 / 2, 0);
+  T.row(2).array() -= 2;
+  CHECK((s.frame.nominal() - T).cwiseAbs().maxCoeff() <= 1e-15);
+  // On the axis the directions of a cylinder are not defined: those of the system.
+  const fe::Grid axis = read("CORD2C" + card + "GRID,1,,7.,0.,2.,5\n")[0];
+  CHECK(axis.frame.nominal() == read("CORD2R" + card + "GRID,1,,7.,0.,2.,5\n")[0].frame.nominal());
+  // Points of a system in a cylindrical one: A at r = 1, theta = 90 degrees.
+  const fe::Grid in =
+      read("CORD2C" + card +
+           "CORD2R,6,5,1.,90.,0.,1.,90.,1.,+B\n+B,2.,90.,0.\nGRID,1,6,1.,2.,3.,6\n")[0];
+  CHECK((in.position - in_basic(-2, 2, 3)).norm() <= 1e-15 * 4);
+}
+
+TEST_CASE("systems by three grids, two in one card") {
+  const std::string grids = "GRID,1,,0.,0.,2.\nGRID,2,,1.,0.,2.\nGRID,3,,0.,1.,2.\n";
+  const auto last = [&](const std::string& text) { return read(grids + text).back(); };
+  const fe::Grid by_points =
+      read("CORD2C,5,0,0.,0.,2.,1.,0.,2.,+A\n+A,0.,1.,2.\nGRID,9,5,2.,30.,5.,5\n")[0];
+  for (const char* cards : {"CORD1C,5,1,2,3\n", "CORD1C,4,2,1,3,5,1,2,3\n"}) {
+    const fe::Grid g = last(std::string(cards) + "GRID,9,5,2.,30.,5.,5\n");
+    CHECK((g.position - by_points.position).norm() <= 1e-15 * 6);
+    CHECK((g.frame.nominal() - by_points.frame.nominal()).cwiseAbs().maxCoeff() <= 1e-15);
+  }
+  CHECK((last("CORD1R,5,1,2,3\nGRID,9,5,1.,2.,3.\n").position - Vector3d(3, 1, 4)).norm() <= 1e-15);
+  CHECK((last("CORD1S,5,1,2,3\nGRID,9,5,2.,90.,90.\n").position - Vector3d(0, 0, 4)).norm() <=
+        1e-15 * 4);
+}
+
 TEST_CASE("mistakes in bulk data, with their lines") {
   refused(replaced(kText, "5.,,-1.+0", "5.,,x"), {"m.bdf:10", "'x'", "field 6"});
   refused(replaced(kText, "grid,12,3", "grid,12,7"), {"m.bdf:10", "coordinate system 7"});
   refused(replaced(kText, "CORD2R* 4               3", "CORD2R* 4               4"),
           {"m.bdf:11", "coordinate system 4", "itself"});
-  refused(replaced(kText, "CORD2R  3", "CORD2C  3"), {"m.bdf:10", "CORD2C", "CORD2R"});
+  refused(replaced(kText, "CORD2R  3", "CORD3G  3"), {"m.bdf:10", "CORD3G", "CORD2R"});
+  refused("CORD1R,5,1,2,3\nGRID,1\nGRID,2,,,,1.\nGRID,9,5\n",
+          {"m.bdf:4", "grid 3 of coordinate system 5"});
+  refused("CORD1R,5,1,2,3\nGRID,1\nGRID,2,,,,1.\nGRID,3,5,1.\nGRID,9,5\n",
+          {"m.bdf:4", "coordinate system 5", "itself"});
   refused(replaced(kText, "+A      0.      1.      2.", "+A      2.      0.      2."),
           {"coordinate system 3", "line"});
   refused(replaced(kText, "GRID    9 ", "GRID    12"), {"m.bdf:11", "'12'", "line 10"});

@@ -127,6 +127,51 @@ TEST_CASE("modes and geometry in every byte order, word size and precision") {
       }
 }
 
+TEST_CASE("systems of GEOM1: by points and by grids, cylindrical and spherical") {
+  for (const bool big_endian : {false, true})
+    for (const bool long_words : {false, true})
+      for (const bool wide : {false, true}) {
+        CAPTURE(big_endian);
+        CAPTURE(long_words);
+        CAPTURE(wide);
+        Op2Writer w({big_endian, long_words});
+        const auto reals = [&](std::initializer_list<double> values) {
+          std::string all;
+          for (const double x : values) all += wide ? w.wide(x) : w.real(x);
+          return all;
+        };
+        // Systems 3 and 4 at (0, 0, 2), z along the basic x, x along the basic y; 5 by grids there.
+        const auto by_points = [&](std::int64_t code, std::int64_t sub, std::int64_t id) {
+          return w.integers({code, sub,
+                             wide        ? 1310008
+                             : sub == 20 ? 9
+                                         : 10,
+                             id, 1, 2, 0}) +
+                 reals({0, 0, 2, 1, 0, 2, 0, 1, 2});
+        };
+        const auto grid = [&](int id, int in, std::initializer_list<double> point, int moves) {
+          return w.integers({id, in}) + reals(point) + w.integers({moves, 0, 0});
+        };
+        w.table("GEOM1", {by_points(2001, 20, 3), by_points(2201, 22, 4),
+                          w.integers({1701, 17, 6, 5, 2, 1, 11, 12, 13}),
+                          w.integers({4501, 45, wide ? 1120001 : 1}) + grid(1, 3, {2, 90, 5}, 3) +
+                              grid(2, 4, {2, 90, 90}, 0) + grid(3, 5, {2, 90, 5}, 5) +
+                              grid(11, 0, {0, 0, 2}, 0) + grid(12, 0, {1, 0, 2}, 0) +
+                              grid(13, 0, {0, 1, 2}, 0)});
+        w.end();
+        const std::vector<fe::Grid> grids = fe::op2_grids(read(w.bytes));
+        REQUIRE(grids.size() == 6);
+        // r = 2 and theta = 90 degrees: 2 along y, which is the basic z.
+        CHECK((grids[0].position - Vector3d(5, 0, 4)).norm() <= 1e-15);
+        CHECK((grids[1].position - Vector3d(0, 0, 4)).norm() <= 1e-15);
+        CHECK((grids[2].position - Vector3d(5, 0, 4)).norm() <= 1e-15);
+        Matrix3d T;  // r along the basic z, theta against the basic y, z along the basic x
+        T << 0, 0, 1, 0, -1, 0, 1, 0, 0;
+        CHECK((grids[0].frame.nominal() - T).cwiseAbs().maxCoeff() <= 1e-15);
+        CHECK((grids[2].frame.nominal() - T).cwiseAbs().maxCoeff() <= 1e-15);
+      }
+}
+
 TEST_CASE("cantilever: the parent is the grid that the run clamps") {
   const fe::Op2File file = fe::read_op2(kFolder + "pn_mwe_s-solution_1.op2");
   // Grid 2, at the tip, belongs to no element, and thus rests.
