@@ -25,9 +25,9 @@ const char* const kUsage = R"(usage:
       FILE.json    the model with its poles, certificate and notes
       FILE.csv     frequency response; needs --omega
   titop import FILE                        what is in a file of a finite-element program, its checks
-                                           and ports: OP4, OP2, DMIG punch, CSV of modes, CalculiX;
-                                           with -o and --parent a body: BODY.json, a diagram of it
-                                           alone, or BODY.csv, its modal data
+                                           and ports: OP4, OP2, f06, DMIG punch, CSV of
+                                           modes, CalculiX; with -o and --parent a body: BODY.json,
+                                           a diagram of it alone, or BODY.csv, its modal data
   titop margins DIAGRAM.json               stability margins of the loop at every loop point
   titop simulate DIAGRAM.json FILE.csv     outputs over time; needs --step, --until, and --record or
                                            --unit-step
@@ -43,7 +43,8 @@ options:
   -o FILE                                  report: the HTML file; certify: also writes JSON;
                                            import: the body
   --parent PORT --children PORT,PORT       import: ports of the body
-  --grids FILE                             import: bulk data with positions, FILE.asm if left out
+  --grids FILE                             import: bulk data with positions, FILE.asm if left out;
+                                           of an f06 its own echo, or FILE.bdf, .dat, .nas
   --matrices K,M                           import: names of stiffness and mass
   --units METRE KILOGRAM SECOND            import: of the file, 1e-3 1 1 for mm, kg, s
   --mass M X Y Z JX JY JZ                  import: of a planar model, the whole body's mass, centre of

@@ -32,12 +32,11 @@ bool is_modal_csv(std::string_view line) {
 }
 
 [[noreturn]] void refuse(const TextFile& file, const std::string& found, const char* hint) {
-  throw Error(
-      Code::bad_file,
-      fmt::format("{}: found {}, expected OP4, OP2, DMIG punch, modal data as CSV, or a file of "
-                  "CalculiX (.sti, .mas, .dof, .inp)",
-                  file.name, found),
-      hint);
+  throw Error(Code::bad_file,
+              fmt::format("{}: found {}, expected OP4, OP2, f06, DMIG punch, modal "
+                          "data as CSV, or a file of CalculiX (.sti, .mas, .dof, .inp)",
+                          file.name, found),
+              hint);
 }
 
 FileKind kind_of_text(const TextFile& file) {
@@ -49,10 +48,11 @@ FileKind kind_of_text(const TextFile& file) {
     if (first && is_modal_csv(text)) return FileKind::modal_csv;
     first = false;
     if (line.text.starts_with("DMIG")) return FileKind::dmig;
+    if (line.text.find("R E A L   E I G E N V A L U E S") != std::string::npos)
+      return FileKind::f06;
     deck = deck || line.text.starts_with("BEGIN BULK") || line.text.starts_with("GRID");
   }
   if (deck) refuse(file, "bulk data without DMIG", kAskNastran);
-  if (file.name.ends_with(".f06")) refuse(file, "a printed file", kAskNastran);
   refuse(file, "another text",
          "of Abaqus and ANSYS write the modes, L_P and D_P as CSV (read_modal_csv)");
 }
@@ -62,6 +62,7 @@ FileKind kind_of_text(const TextFile& file) {
 FileKind kind_of_file(const std::filesystem::path& path) {
   for (const char* extension : {".sti", ".mas", ".dof", ".inp"})
     if (path.extension() == extension) return FileKind::calculix;
+  if (path.extension() == ".f06" || path.extension() == ".F06") return FileKind::f06;
   const TextFile file = read_text(path);
   if (file.content.find('\0') == std::string::npos) return kind_of_text(file);
   // The length of the first Fortran record in either byte order: the head of a matrix, a marker.

@@ -5,10 +5,10 @@
 /// Kinds of files that a body can be made of. For the folder's own files.
 namespace titop::fe {
 
-enum class FileKind { op4, op2, dmig, modal_csv, calculix };
+enum class FileKind { op4, op2, f06, dmig, modal_csv, calculix };
 
-/// By extension (CalculiX) or content. Throws bad_file for another kind, with the output to request
-/// from the program that wrote it.
+/// By extension (CalculiX, f06) or content. Throws bad_file for another kind, with the
+/// output to request from the program that wrote it.
 FileKind kind_of_file(const std::filesystem::path& file);
 
 }  // namespace titop::fe

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <map>
+#include <functional>
 #include <titop/blocks/fe/bulk_data.hpp>
 #include <titop/blocks/fe/calculix.hpp>
 #include <titop/blocks/fe/dmig.hpp>
+#include <titop/blocks/fe/f06.hpp>
 #include <titop/blocks/fe/file_kind.hpp>
 #include <titop/blocks/fe/import.hpp>
+#include <titop/blocks/fe/import_mesh.hpp>
 #include <titop/blocks/fe/import_options.hpp>
 #include <titop/blocks/fe/mesh_checks.hpp>
 #include <titop/blocks/fe/modal_checks.hpp>
@@ -26,6 +27,9 @@ namespace fs = std::filesystem;
 
 using Names = std::vector<std::string>;
 
+/// Bulk data of a run, beside its f06.
+const std::vector<const char*> kBulkFiles = {".asm", ".bdf", ".dat", ".nas"};
+
 /// One import; `result.text` lists the contents of the file.
 class Importer {
  public:
@@ -33,11 +37,12 @@ class Importer {
 
   Import run() {
     switch (kind_of_file(file_)) {
-      case FileKind::op4: use(grids_of_op4()); break;
+      case FileKind::op4: use(six_rows_each(op4())); break;
       case FileKind::dmig: use(grids_of_dmig()); break;
       case FileKind::calculix: use(calculix()); break;
       case FileKind::modal_csv: modal_data_alone(); break;
       case FileKind::op2: op2(); break;
+      case FileKind::f06: f06(); break;
     }
     for (const std::string& port : result_.ports) ports_ += (ports_.empty() ? "" : ", ") + port;
     result_.text += fmt::format("ports: {}\n", ports_.empty() ? "none" : ports_);
@@ -54,11 +59,15 @@ class Importer {
     refuse_others(options_, taken, file_.filename().string());
   }
 
-  fs::path bulk_file() const {
+  /// The one that is given, or one of the same name beside the file; empty if there is none.
+  fs::path bulk_file(const std::vector<const char*>& extensions = {".asm"}) const {
     if (!options_.grids.empty()) return options_.grids;
-    const fs::path beside = fs::path(file_).replace_extension(".asm");
-    std::error_code ignored;
-    return beside != file_ && fs::exists(beside, ignored) ? beside : fs::path();
+    for (const char* extension : extensions) {
+      const fs::path beside = fs::path(file_).replace_extension(extension);
+      std::error_code ignored;
+      if (beside != file_ && fs::exists(beside, ignored)) return beside;
+    }
+    return {};
   }
 
   Names list(const std::vector<Op4Matrix>& all) {
@@ -74,11 +83,15 @@ class Importer {
     return names;
   }
 
-  Mesh grids_of_op4() {
+  std::vector<Op4Matrix> op4() const {
     Names only;
     if (!options_.stiffness.empty() && !options_.mass.empty())
       only = {options_.stiffness, options_.mass};
-    const std::vector<Op4Matrix> all = read_op4(file_, only);
+    return read_op4(file_, only);
+  }
+
+  /// Six rows for each grid of the bulk data.
+  Mesh six_rows_each(const std::vector<Op4Matrix>& all) {
     const Names names = list(all);
     const auto [stiffness, mass] = chosen_pair(options_, names);
     const Op4Matrix &K = find_matrix(all, stiffness), &M = find_matrix(all, mass);
@@ -91,15 +104,15 @@ class Importer {
           "writes them by EXTSEOUT(ASMBULK,EXTBULK,MATOP4=31)");
     const std::vector<Grid> grids = read_grids(bulk);
     tell("grids from {}: {}", bulk.filename().string(), grids.size());
-    return mesh_of(six_rows_each(K, M, grids), grids);
+    return six_rows_each(K, M, grids);
   }
 
-  GridMatrices six_rows_each(const Op4Matrix& K, const Op4Matrix& M,
-                             const std::vector<Grid>& grids) const {
+  Mesh six_rows_each(const Op4Matrix& K, const Op4Matrix& M, const std::vector<Grid>& grids) {
     std::vector<int> ids;
     for (const Grid& g : grids) ids.push_back(g.id);
-    return grid_matrices(file_.stem().string(), K.value, M.value, ids,
-                         std::min(K.digits, M.digits));
+    return mesh_of(
+        grid_matrices(file_.stem().string(), K.value, M.value, ids, std::min(K.digits, M.digits)),
+        grids);
   }
 
   /// Matrices if it has a pair of them, the modes of its run otherwise.
@@ -115,25 +128,53 @@ class Importer {
         })) {
       refuse({.ports = true, .units = true, .matrices = true, .modes = true, .xi = true});
       const auto [stiffness, mass] = chosen_pair(options_, names);
-      const std::vector<Grid> grids = op2_grids(all);
-      return use(mesh_of(six_rows_each(find_matrix(all.matrices, stiffness),
-                                       find_matrix(all.matrices, mass), grids),
-                         grids));
+      return use(six_rows_each(find_matrix(all.matrices, stiffness),
+                               find_matrix(all.matrices, mass), op2_grids(all)));
     }
     op2_modes_alone(all);
   }
 
   void op2_modes_alone(const Op2File& all) {
     refuse({.ports = true, .units = true, .xi = true});
-    const Op2Modes modes = op2_modes(all);
+    clamped_run(op2_modes(all),
+                [&] { return op2_modal_data(all, options_.parent, options_.children); });
+    tell_of_lumped_mass();
+  }
+
+  void tell_of_lumped_mass() {
+    if (result_.body)
+      tell("D_P leaves out the mass that is lumped at grid {}: add it as a rigid body there",
+           options_.parent);
+  }
+
+  void f06() {
+    refuse({.ports = true, .units = true, .grids = true, .xi = true});
+    const F06File all = read_f06(file_);
+    tell("modes: {}, with shapes of {} grids, support forces of {}, {} digits",
+         all.modes.omega.size(), all.modes.shapes.size(), all.forces.size(), 7);
+    tell("participation factors: {}, effective masses: {}, rigid mass of the a-set: {}",
+         all.factors ? "yes" : "no", all.effective ? "yes" : "no", all.rigid ? "yes" : "no");
+    if (all.weight)
+      tell("mass by the grid point weight generator, in units of weight: {:.7g}",
+           all.weight->value(0, 0));
+    clamped_run(all.modes, [&] {
+      const fs::path bulk = all.bulk.empty() ? bulk_file(kBulkFiles) : options_.grids;
+      const std::vector<Grid> grids = bulk.empty() ? f06_grids(all) : read_grids(bulk);
+      tell("grids from {}: {}", bulk.empty() ? "its bulk data echo" : bulk.filename().string(),
+           grids.size());
+      return f06_modal_data(all, grids, options_.parent, options_.children);
+    });
+    if (all.rigid) tell_of_lumped_mass();
+  }
+
+  /// A body of the modes of a run, which says where it is clamped.
+  void clamped_run(const NormalModes& modes, const std::function<ModalData()>& body) {
     for (const auto& [grid, shape] : modes.shapes) result_.ports.push_back(std::to_string(grid));
     tell("at rest in all modes, for the parent: {}", fmt::join(grids_at_rest(modes), ", "));
     if (options_.parent.empty()) return;
-    ModalData data = op2_modal_data(all, options_.parent, options_.children);
+    ModalData data = body();
     set_damping(options_.modes.xi, data);
     take(scaled(std::move(data), options_.units));
-    tell("D_P leaves out the mass that is lumped at grid {}: add it as a rigid body there",
-         options_.parent);
   }
 
   Mesh grids_of_dmig() {
@@ -144,65 +185,13 @@ class Importer {
     const fs::path bulk = bulk_file();
     tell("{}, {}: {} rows, {:.3g} digits", stiffness, mass, m.dofs.size(), m.digits);
     if (bulk.empty()) return mesh_of(m, {});
-    std::vector<Grid> grids = read_grids(bulk);
-    std::erase_if(grids, [&](const Grid& g) { return !has_rows(m, g); });
+    const std::vector<Grid> grids = with_rows(read_grids(bulk), m);
     tell("grids from {}: {}", bulk.filename().string(), grids.size());
     return mesh_of(m, grids);
   }
 
-  /// A scalar point may have the number of a grid.
-  static bool has_rows(const GridMatrices& m, const Grid& grid) {
-    return std::ranges::any_of(
-        m.dofs, [&](const GridDof& dof) { return dof.component > 0 && dof.grid == grid.id; });
-  }
-
-  /// Positions by statics if there are no grids.
-  Mesh mesh_of(GridMatrices m, std::vector<Grid> grids) {
-    const std::vector<GridDof> empty = empty_rows(m);
-    Names dropped;
-    for (const GridDof& dof : empty)
-      dropped.push_back(dof.component > 0 ? fmt::format("{}.{}", dof.grid, dof.component)
-                                          : fmt::format("scalar {}", dof.grid));
-    if (!empty.empty())
-      tell("dropped, without stiffness and mass: {} rows, {}", empty.size(),
-           titop::detail::some_names(dropped));
-    m = without(std::move(m), empty);
-    if (grids.empty()) grids = by_statics(m);
-    std::erase_if(grids, [&](const Grid& g) { return !has_rows(m, g); });
-    return to_mesh(m, grids);
-  }
-
-  /// From the grid of the parent port, or else from the first one that gives rigid motions.
-  std::vector<Grid> by_statics(const GridMatrices& m) {
-    const std::vector<int> from = references(m);
-    for (std::size_t i = 0;; ++i) try {
-        std::vector<Grid> grids = grids_by_statics(m, from.at(i));
-        const Grid& worst = *std::ranges::max_element(grids, {}, &Grid::noise);
-        tell("positions by statics, from grid {}: not rigid by {:.1e}, at grid {}", from[i],
-             worst.noise, worst.id);
-        return grids;
-      } catch (const Error&) {
-        constexpr std::size_t most = 10;
-        if (i + 1 == std::min(from.size(), most)) throw;
-      }
-  }
-
-  /// The grid of the parent port, or else those with the most components; 0 if there are none.
-  std::vector<int> references(const GridMatrices& m) const {
-    const std::string& name = options_.parent;
-    int parent = 0;
-    if (const auto end = name.data() + name.size();
-        !name.empty() && std::from_chars(name.data(), end, parent).ptr == end)
-      return {parent};
-    std::map<int, int> components;
-    int most = 0;
-    for (const GridDof& dof : m.dofs)
-      if (dof.component > 0) most = std::max(most, ++components[dof.grid]);
-    std::vector<int> grids;
-    for (const auto& [grid, count] : components)
-      if (count == most) grids.push_back(grid);
-    if (grids.empty()) grids.push_back(0);
-    return grids;
+  Mesh mesh_of(const GridMatrices& m, const std::vector<Grid>& grids) {
+    return mesh_of_matrices(m, grids, options_.parent, result_.text);
   }
 
   Mesh calculix() {

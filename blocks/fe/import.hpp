@@ -18,9 +18,10 @@ struct ImportOptions {
   std::vector<std::string> children = {};  ///< child ports, of `Import::ports`
   DataUnits units = {};                    ///< of the file; a CSV has its own line of them
   ModeOptions modes = {};                  ///< of the mesh, in the file's units of mass and length
-  /// Positions and frames of the grids of an OP4 or DMIG file: bulk data (`read_grids`). Empty: the
-  /// file of the same name with the extension .asm, or, without it, by statics from the parent,
-  /// whose displacement frame is then the body's.
+  /// Positions and frames of the grids of an OP4, DMIG or f06 file: bulk data (`read_grids`).
+  /// Empty: the file of the same name with the extension .asm, or, without it, of a DMIG by statics
+  /// from the parent, whose displacement frame is then the body's. Of an f06 its own bulk data
+  /// echo, or the file of the same name with .asm, .bdf, .dat or .nas.
   std::filesystem::path grids = {};
   /// Names of stiffness and mass; empty: the one pair of KAA, MAA; KXX, MXX; KAAX, MAAX; KGG, MGG;
   /// K, M that the file has.
@@ -34,19 +35,19 @@ struct Import {
   std::optional<ModalData> body;   ///< in SI, if a parent was named, or the file has modal data
 };
 
-/// Reads a file by its content: OP4 (text or binary), OP2, DMIG punch, modal data as CSV, or one of
-/// the four files of CalculiX (.sti, .mas, .dof, .inp). Rows without stiffness and mass are dropped
-/// and listed; the matrices are symmetrised. `text` has the matrices with sizes and digits, the
-/// asymmetry, the mass properties, the stiffness against rigid motions, and of a body its
-/// `modal_report`.
+/// Reads a file by its content: OP4 (text or binary), OP2, f06, DMIG punch, modal data as CSV, or one of the four files of CalculiX (.sti, .mas, .dof, .inp). Rows without stiffness
+/// and mass are dropped and listed; the matrices are symmetrised. `text` has the matrices with
+/// sizes and digits, the asymmetry, the mass properties, the stiffness against rigid motions, and
+/// of a body its `modal_report`.
 ///
-/// Rows of an OP4 are six for each grid of the bulk data, in ascending order, then scalar points;
-/// of stiffness and mass in an OP2 those of its own GEOM1. An OP2 without them gives the modes of
-/// its run (`op2_modal_data`), clamped at the parent by the run.
+/// Rows of an OP4 are six for each grid of the bulk data, in ascending order, then
+/// scalar points; of an OP2 those of its own GEOM1. An OP2 without stiffness and mass, and an f06,
+/// give the modes of their run (`op2_modal_data`, `f06_modal_data`), clamped at the parent by the
+/// run.
 ///
 /// Throws the errors of the readers, of `to_mesh` and `modal_data`; bad_value for options that the
-/// kind of file does not take (a CSV of modes: any; the modes of an OP2: grids, modes but for xi;
-/// an OP2's matrices: grids; CalculiX: grids, stiffness, mass); bad_file for a file of another
+/// kind of file does not take (a CSV of modes: any; the modes of an OP2 or f06: modes but for xi;
+/// an OP2: grids; CalculiX: grids, stiffness, mass); bad_file for a file of another
 /// kind, with the output to request from the program; unknown_name for matrices or ports that do
 /// not exist.
 Import import_body(const std::filesystem::path& file, const ImportOptions& options = {});

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <titop/blocks/fe/op2_results.hpp>
 #include <titop/graph/error.hpp>
@@ -68,7 +67,7 @@ double finite(double value, const Op2File& file, const Op2Table& t) {
 
 /// Mode, order, eigenvalue, omega, frequency, generalised mass and stiffness of each mode. Returns
 /// the numbers of the modes.
-std::vector<long long> read_lama(const Op2File& file, Op2Modes& modes) {
+std::vector<long long> read_lama(const Op2File& file, NormalModes& modes) {
   const Op2Table& t = table(file, "LAMA");
   if (t.records.size() != 3)
     refuse(file, fmt::format("table {} has {} records", t.name, t.records.size()),
@@ -141,85 +140,21 @@ const Op4Matrix& summary_matrix(const Op2File& file, const std::string& name,
   refuse(file, fmt::format("it has no matrix {}", name), ask(parent));
 }
 
-const Grid& find_grid(const std::vector<Grid>& grids, const Op2File& file,
-                      const std::string& name) {
-  for (const Grid& g : grids)
-    if (std::to_string(g.id) == name) return g;
-  throw Error(Code::unknown_name, fmt::format("{} has no grid {}", file.name, name),
-              "take the number of a GRID");
-}
-
-/// From the grid's displacement frame to the basic one.
-MatrixXd in_basic(const Grid& grid, MatrixXd values) {
-  const Matrix3d T = grid.frame.nominal();
-  values.topRows<3>() = (T * values.topRows<3>()).eval();
-  values.bottomRows<3>() = (T * values.bottomRows<3>()).eval();
-  return values;
-}
-
-constexpr double kSameMotion = 1e-3;  ///< of supports' forces, relative to the rigid mass
-
-/// A body accelerated by P alone has f = -omega^2 L_P' as support forces of each mode, about P: not
-/// if the run has other supports, or if L_P is about another grid.
-void require_support(const Op2File& file, const Op2Modes& modes, const MatrixXd& forces,
-                     const ModalData& data, const std::string& parent) {
-  for (Index k = 0; k < modes.omega.size(); ++k)
-    for (Index c = 0; c < 6; ++c) {
-      const double square = modes.omega(k) * modes.omega(k);
-      const double size = std::sqrt(data.D_P.diagonal().segment<3>(c < 3 ? 0 : 3).maxCoeff());
-      if (std::abs(forces(c, k) + square * data.L_P(k, c)) <= kSameMotion * square * size) continue;
-      refuse(file,
-             fmt::format("the support forces of grid {} in mode {} are not those of MPFACS", parent,
-                         k + 1),
-             fmt::format("the run has more supports than grid {}, or MEFFMASS refers to another "
-                         "grid: {}",
-                         parent, ask(parent)));
-    }
-}
-
-void require_unit_masses(const Op2File& file, const Op2Modes& modes) {
-  for (Index k = 0; k < modes.mass.size(); ++k)
-    if (!(std::abs(modes.mass(k) - 1) <= 1e-5))
-      refuse(file,
-             fmt::format("mode {} has the generalised mass {:.6g}, not 1", k + 1, modes.mass(k)),
-             "normalise the modes to MASS, in EIGRL or EIGR");
-}
-
 }  // namespace
 
-Op2Modes op2_modes(const Op2File& file) {
-  Op2Modes modes;
+NormalModes op2_modes(const Op2File& file) {
+  NormalModes modes;
   modes.numbers = read_lama(file, modes);
   modes.shapes = values_at_grids(file, "OUGV1", kEigenvectors, modes.numbers);
   return modes;
 }
 
-std::vector<int> grids_at_rest(const Op2Modes& modes) {
-  const Index n = modes.omega.size();
-  MatrixXd largest = MatrixXd::Zero(2, n);
-  const auto sizes = [](const MatrixXd& shape) {
-    MatrixXd size(2, shape.cols());
-    size << shape.topRows<3>().cwiseAbs().colwise().maxCoeff(),
-        shape.bottomRows<3>().cwiseAbs().colwise().maxCoeff();
-    return size;
-  };
-  for (const auto& [grid, shape] : modes.shapes) largest = largest.cwiseMax(sizes(shape));
-  std::vector<int> grids;
-  for (const auto& [grid, shape] : modes.shapes)
-    if ((sizes(shape).array() <= 1e-6 * largest.array()).all()) grids.push_back(grid);
-  return grids;
-}
-
 ModalData op2_modal_data(const Op2File& file, const std::string& parent,
                          const std::vector<std::string>& children) {
-  const Op2Modes modes = op2_modes(file);
-  const Index n = modes.omega.size();
-  const std::vector<Grid> grids = op2_grids(file);
-  const Grid& P = find_grid(grids, file, parent);
-  if (const auto rest = grids_at_rest(modes); std::ranges::find(rest, P.id) == rest.end())
-    throw Error(Code::bad_value, fmt::format("{}: grid {} moves in the modes", file.name, parent),
-                fmt::format("SPC1 123456 at it, or take the clamped grid; at rest are {}",
-                            fmt::join(rest, ", ")));
+  detail::ClampedRun run{
+      .file = file.name, .modes = op2_modes(file), .grids = op2_grids(file), .ask = ask(parent)};
+  const Index n = run.modes.omega.size();
+  detail::require_at_rest(run.modes, file.name, detail::find_grid(run.grids, file.name, parent));
   const Op4Matrix& D = summary_matrix(file, "RBMASSS", parent);
   const Op4Matrix& L = summary_matrix(file, "MPFACS", parent);
   if (D.value.rows() != 6 || D.value.cols() != 6 || L.value.rows() != 6 || L.value.cols() != n)
@@ -227,27 +162,10 @@ ModalData op2_modal_data(const Op2File& file, const std::string& parent,
            fmt::format("RBMASSS is {} x {}, MPFACS {} x {}, for {} modes", D.value.rows(),
                        D.value.cols(), L.value.rows(), L.value.cols(), n),
            "they are 6 x 6 and 6 by the number of modes");
-  require_unit_masses(file, modes);
-  ModalData data;
-  data.omega = modes.omega;
-  data.xi = VectorXd::Zero(n);
-  data.L_P = L.value.transpose();
-  data.D_P = D.value;
-  data.digits = 7;
-  const auto forces = values_at_grids(file, "OQG1", kSupportForces, modes.numbers);
-  const auto held = forces.find(P.id);
-  require_support(file, modes,
-                  held == forces.end() ? MatrixXd::Zero(6, n) : in_basic(P, held->second), data,
-                  parent);
-  for (const std::string& child : children) {
-    const Grid& C = find_grid(grids, file, child);
-    const auto shape = modes.shapes.find(C.id);
-    if (shape == modes.shapes.end())
-      throw Error(Code::unknown_name, fmt::format("{} has no shapes of grid {}", file.name, child),
-                  ask(parent));
-    data.children.push_back({child, C.position - P.position, in_basic(C, shape->second)});
-  }
-  return data;
+  run.D = D.value;
+  run.L = L.value;
+  run.forces = values_at_grids(file, "OQG1", kSupportForces, run.modes.numbers);
+  return detail::clamped_modal_data(run, parent, children);
 }
 
 }  // namespace titop::fe

@@ -1,35 +1,24 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <map>
 #include <string>
 #include <titop/blocks/fe/grids.hpp>
 #include <titop/blocks/fe/modal_data.hpp>
+#include <titop/blocks/fe/normal_modes.hpp>
 #include <titop/blocks/fe/op2.hpp>
 #include <vector>
 
 /// Results of a normal modes analysis (SOL 103) in an OP2, in the data's own units.
 namespace titop::fe {
 
-/// Tables LAMA and OUGV1.
-struct Op2Modes {
-  Eigen::VectorXd omega;                  ///< N [rad/unit of time]
-  Eigen::VectorXd mass;                   ///< N, generalised masses
-  std::vector<long long> numbers;         ///< N, of the modes
-  std::map<int, Eigen::MatrixXd> shapes;  ///< 6 x N by grid, in its displacement frame
-};
+/// Tables LAMA and OUGV1, without scalar points. BOPHIG and OPHIG are not read: their frame is the
+/// basic one, or not known. Throws bad_file for a table that is not there, with the lines that
+/// write it, or there twice, that has several subcases, SORT2, complex shapes, or other modes than
+/// LAMA.
+NormalModes op2_modes(const Op2File& file);
 
-/// The modes, without scalar points. BOPHIG and OPHIG are not read: their frame is the basic one,
-/// or not known. Throws bad_file for a table that is not there, with the lines that write it, or
-/// there twice, that has several subcases, SORT2, complex shapes, or other modes than LAMA.
-Op2Modes op2_modes(const Op2File& file);
-
-/// Grids that no mode moves by more than 1e-6 of its largest displacement and rotation: those that
-/// may be clamped.
-std::vector<int> grids_at_rest(const Op2Modes& modes);
-
-/// Positions and frames of all grids by ascending number, from GEOM1 (GRID, CORD2R, single or
-/// double precision), in the basic frame. Throws bad_file for a missing table or coordinate system.
+/// Positions and frames of all grids by ascending number, from GEOM1 (GRID and the systems that
+/// `read_grids` takes, single or double precision), in the basic frame. Throws bad_file for a
+/// missing table or coordinate system.
 std::vector<Grid> op2_grids(const Op2File& file);
 
 /// Modal data of a body clamped at grid `parent` alone by the run itself, with modes of generalised

@@ -167,7 +167,8 @@ TEST_CASE("other files are refused with what to ask of the program") {
                 Code::bad_file, {"pn_mwe_s-solution_1.dat", "EXTSEOUT"});
   const titop_test::Folder folder;
   folder.write("m.f06", "1   MSC.NASTRAN JOB\n");
-  check_refused([&] { fe::import_body(folder.path / "m.f06"); }, Code::bad_file, {"EXTSEOUT"});
+  check_refused([&] { fe::import_body(folder.path / "m.f06"); }, Code::bad_file,
+                {"m.f06", "REAL EIGENVALUES", "METHOD"});
   folder.write("m.bin", std::string("\1\2\0\0rubbish", 11));
   check_refused([&] { fe::import_body(folder.path / "m.bin"); }, Code::bad_file, {"m.bin"});
   std::filesystem::copy_file(kOp4, folder.path / "alone.op4");
