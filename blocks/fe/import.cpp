@@ -104,10 +104,6 @@ class Importer {
           "writes them by EXTSEOUT(ASMBULK,EXTBULK,MATOP4=31)");
     const std::vector<Grid> grids = read_grids(bulk);
     tell("grids from {}: {}", bulk.filename().string(), grids.size());
-    return six_rows_each(K, M, grids);
-  }
-
-  Mesh six_rows_each(const Op4Matrix& K, const Op4Matrix& M, const std::vector<Grid>& grids) {
     std::vector<int> ids;
     for (const Grid& g : grids) ids.push_back(g.id);
     return mesh_of(
@@ -128,8 +124,8 @@ class Importer {
         })) {
       refuse({.ports = true, .units = true, .matrices = true, .modes = true, .xi = true});
       const auto [stiffness, mass] = chosen_pair(options_, names);
-      return use(six_rows_each(find_matrix(all.matrices, stiffness),
-                               find_matrix(all.matrices, mass), op2_grids(all)));
+      const GridMatrices m = op2_matrices(all, stiffness, mass);
+      return use(mesh_of(m, with_rows(op2_grids(all), m)));
     }
     op2_modes_alone(all);
   }

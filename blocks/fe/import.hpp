@@ -41,7 +41,7 @@ struct Import {
 /// of a body its `modal_report`.
 ///
 /// Rows of an OP4 are six for each grid of the bulk data, in ascending order, then
-/// scalar points; of an OP2 those of its own GEOM1. An OP2 without stiffness and mass, and an f06,
+/// scalar points; of an OP2 those of `op2_matrices`. An OP2 without stiffness and mass, and an f06,
 /// give the modes of their run (`op2_modal_data`, `f06_modal_data`), clamped at the parent by the
 /// run.
 ///

@@ -21,6 +21,16 @@ NormalModes op2_modes(const Op2File& file);
 /// missing table or coordinate system.
 std::vector<Grid> op2_grids(const Op2File& file);
 
+/// Stiffness and mass of these names with the grid and component of each row: of the a-set if the
+/// file has USET and EQEXIN (as PARAM,POST,-1 or a DMAP alter write them), of the g-set if they
+/// have as many rows as EQEXIN; without these tables six rows for each grid of GEOM1, in ascending
+/// order, then scalar points (`grid_matrices`).
+///
+/// Throws the errors of `find_matrix` and `grid_matrices`; bad_file for matrices with other numbers
+/// of rows, and tables that contradict each other.
+GridMatrices op2_matrices(const Op2File& file, const std::string& stiffness,
+                          const std::string& mass);
+
 /// Modal data of a body clamped at grid `parent` alone by the run itself, with modes of generalised
 /// mass 1: omega from LAMA, Phi of the children (grid numbers, as names) from OUGV1, L_P from
 /// MPFACS, D_P from RBMASSS. Nastran computes these in the basic frame about the grid of MEFFMASS's

@@ -172,6 +172,42 @@ TEST_CASE("systems of GEOM1: by points and by grids, cylindrical and spherical")
       }
 }
 
+TEST_CASE("rows of matrices by USET and EQEXIN") {
+  // Grid 20 comes first in Nastran's order, then the scalar point 5, then grid 10: 13 rows. Of grid
+  // 20 z is in the o-set, rx is an m, ry in s (sb, with bit 1, which some versions give to the
+  // b-set); grid 10 is supported (sg). KAA has 20.x, 20.y, 20.rz, 5.
+  const std::int64_t b = 2 | 1 << 21, o = 4, m = 1, sb = 1 << 10 | 2, sg = 1 << 9, q = 1 << 22;
+  const std::vector<std::int64_t> sets = {b, b, o, m, sb, b, q, sg, sg, sg, sg, sg, sg};
+  const auto file = [&](const std::vector<std::int64_t>& uset, Eigen::Index n) {
+    Op2Writer w({});
+    w.table("GEOM1", {w.integers({4501, 45, 1, 10, 0}) + w.real(1) + w.real(0) + w.real(0) +
+                      w.integers({0, 0, 0, 20, 0}) + w.real(3) + w.real(0) + w.real(0) +
+                      w.integers({0, 0, 0})});
+    w.table("EQEXINS", {w.integers({5, 2, 10, 3, 20, 1}), w.integers({5, 72, 10, 81, 20, 11})});
+    if (!uset.empty()) w.table("USET", {w.integers(uset)});
+    w.matrix("KAA", MatrixXd::Identity(n, n), 2);
+    w.matrix("MAA", 2 * MatrixXd::Identity(n, n), 2);
+    w.end();
+    return read(w.bytes);
+  };
+  const fe::GridMatrices reduced = fe::op2_matrices(file(sets, 4), "KAA", "MAA");
+  CHECK(reduced.dofs == std::vector<fe::GridDof>{{20, 1}, {20, 2}, {20, 6}, {5, 0}});
+  CHECK(reduced.M == 2 * MatrixXd::Identity(4, 4));
+  const fe::GridMatrices all = fe::op2_matrices(file(sets, 13), "KAA", "MAA");
+  CHECK(all.dofs[0] == fe::GridDof{20, 1});
+  CHECK(all.dofs[6] == fe::GridDof{5, 0});
+  CHECK(all.dofs[7] == fe::GridDof{10, 1});
+  const fe::GridMatrices alone = fe::op2_matrices(file({}, 12), "KAA", "MAA");
+  CHECK(alone.dofs[0] == fe::GridDof{10, 1});  // by number, without the tables
+  check_refused([&] { fe::op2_matrices(file(sets, 5), "KAA", "MAA"); }, Code::bad_file,
+                {"KAA", "5 rows", "a-set 4", "g-set 13"});
+  check_refused(
+      [&] {
+        fe::op2_matrices(file({b, b}, 2), "KAA", "MAA");
+      },
+      Code::bad_file, {"USET", "2", "EQEXIN", "13"});
+}
+
 TEST_CASE("cantilever: the parent is the grid that the run clamps") {
   const fe::Op2File file = fe::read_op2(kFolder + "pn_mwe_s-solution_1.op2");
   // Grid 2, at the tip, belongs to no element, and thus rests.

@@ -9,5 +9,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const titop::fe::Op2File file = titop::fe::read_op2(input.path());
     fuzz::refuses_or_reads([&] { titop::fe::op2_modes(file); });
     fuzz::refuses_or_reads([&] { titop::fe::op2_grids(file); });
+    fuzz::refuses_or_reads([&] { titop::fe::op2_matrices(file, "KAA", "MAA"); });
   });
 }
