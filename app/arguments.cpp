@@ -21,11 +21,12 @@ const char* const kUsage = R"(usage:
   titop export DIAGRAM.json FILE           the model in the format of FILE's extension:
       NAME.hpp     C++17 header, and its test NAME_test.cpp
       NAME.m       MATLAB or Octave function
+      FILE.mat     MAT-file of A, B, C, D and the names; needs libmatio
       NAME.py      Python module, and its arrays NAME_A.npy ...
       FILE.json    the model with its poles, certificate and notes
       FILE.csv     frequency response; needs --omega
   titop import FILE                        what is in a file of a finite-element program, its checks
-                                           and ports: OP4, OP2, f06, DMIG punch, CSV of
+                                           and ports: OP4, OP2, f06, DMIG punch, MAT-file, CSV of
                                            modes, CalculiX; with -o and --parent a body: BODY.json,
                                            a diagram of it alone, or BODY.csv, its modal data
   titop margins DIAGRAM.json               stability margins of the loop at every loop point
@@ -33,8 +34,8 @@ const char* const kUsage = R"(usage:
                                            --unit-step
   titop sweep DIAGRAM.json POINTS.csv FILE.csv  poles at every row of POINTS, whose first line names
                                            parameters; with --omega frequency responses
-  titop reduce DIAGRAM.json FILE           a reduced model of the band, FILE.m, FILE.py or FILE.hpp,
-                                           its steps and its error bound; needs --band
+  titop reduce DIAGRAM.json FILE           a reduced model of the band, FILE.m, FILE.mat, FILE.py or
+                                           FILE.hpp, its steps and its error bound; needs --band
   titop --version
 options:
   --set NAME=VALUE                         value of a parameter; once for each

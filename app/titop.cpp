@@ -93,11 +93,13 @@ void export_model(const Arguments& a) {
   const std::string name = file.stem().string(), kind = file.extension().string();
   if (kind == ".csv" && a.omega.empty()) throw Misuse{"a .csv needs --omega LOW HIGH COUNT"};
   if (kind == ".csv") return write_csv(compiled(a), a.omega, file);  // by the factors
-  if (kind != ".json" && kind != ".m" && kind != ".py" && kind != ".hpp") throw unknown_ending(a);
+  if (kind != ".json" && kind != ".m" && kind != ".mat" && kind != ".py" && kind != ".hpp")
+    throw unknown_ending(a);
   const System system = compiled(a);
   warn_of_lost_digits(system);
   if (kind == ".json") return write_json(system, file);
   if (kind == ".m") return write_matlab(system, file);
+  if (kind == ".mat") return write_mat(system, file);
   if (kind == ".py") return write_numpy(system, folder, name);
   write(generate_cpp(system, {.name = name, .sample_time = a.sample_time}), folder);
 }

@@ -220,8 +220,8 @@ int sweep_table(const Arguments& a) {
 void reduce_scene(const Arguments& a) {
   const fs::path file = a.words[2], folder = file.parent_path();
   const std::string name = file.stem().string(), kind = file.extension().string();
-  if (kind != ".m" && kind != ".py" && kind != ".hpp")
-    throw Misuse{fmt::format("'{}' has an unknown extension: .m, .py or .hpp", a.words[2])};
+  if (kind != ".m" && kind != ".mat" && kind != ".py" && kind != ".hpp")
+    throw Misuse{fmt::format("'{}' has an unknown extension: .m, .mat, .py or .hpp", a.words[2])};
   if (a.sample_time != 0 && kind != ".hpp") throw Misuse{"--sample-time is for a file .hpp"};
   if (a.band.empty()) throw Misuse{"reduce needs --band LOW HIGH"};
   const ReducedSystem reduced = compile(diagram_of(a), Scene{.inputs = separated(a.inputs),
@@ -231,6 +231,7 @@ void reduce_scene(const Arguments& a) {
   print(to_string(reduced));
   const StateSpace model = reduced.state_space();
   if (kind == ".m") return write_matlab(model, file);
+  if (kind == ".mat") return write_mat(model, file);
   if (kind == ".py") return write_numpy(model, folder, name);
   const System system = compile(diagram_of_model(model, name), {.minimize_up_to = 0});
   warn_of_lost_digits(system);

@@ -33,7 +33,7 @@ bool is_modal_csv(std::string_view line) {
 
 [[noreturn]] void refuse(const TextFile& file, const std::string& found, const char* hint) {
   throw Error(Code::bad_file,
-              fmt::format("{}: found {}, expected OP4, OP2, f06, DMIG punch, modal "
+              fmt::format("{}: found {}, expected OP4, OP2, f06, DMIG punch, a MAT-file, modal "
                           "data as CSV, or a file of CalculiX (.sti, .mas, .dof, .inp)",
                           file.name, found),
               hint);
@@ -63,6 +63,7 @@ FileKind kind_of_file(const std::filesystem::path& path) {
   for (const char* extension : {".sti", ".mas", ".dof", ".inp"})
     if (path.extension() == extension) return FileKind::calculix;
   if (path.extension() == ".f06" || path.extension() == ".F06") return FileKind::f06;
+  if (path.extension() == ".mat") return FileKind::mat;
   const TextFile file = read_text(path);
   if (file.content.find('\0') == std::string::npos) return kind_of_text(file);
   // The length of the first Fortran record in either byte order: the head of a matrix, a marker.

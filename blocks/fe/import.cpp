@@ -11,6 +11,7 @@
 #include <titop/blocks/fe/import.hpp>
 #include <titop/blocks/fe/import_mesh.hpp>
 #include <titop/blocks/fe/import_options.hpp>
+#include <titop/blocks/fe/mat.hpp>
 #include <titop/blocks/fe/mesh_checks.hpp>
 #include <titop/blocks/fe/modal_checks.hpp>
 #include <titop/blocks/fe/modal_csv.hpp>
@@ -38,6 +39,7 @@ class Importer {
   Import run() {
     switch (kind_of_file(file_)) {
       case FileKind::op4: use(six_rows_each(op4())); break;
+      case FileKind::mat: use(six_rows_each(read_mat(file_))); break;
       case FileKind::dmig: use(grids_of_dmig()); break;
       case FileKind::calculix: use(calculix()); break;
       case FileKind::modal_csv: modal_data_alone(); break;

@@ -18,7 +18,7 @@ struct ImportOptions {
   std::vector<std::string> children = {};  ///< child ports, of `Import::ports`
   DataUnits units = {};                    ///< of the file; a CSV has its own line of them
   ModeOptions modes = {};                  ///< of the mesh, in the file's units of mass and length
-  /// Positions and frames of the grids of an OP4, DMIG or f06 file: bulk data (`read_grids`).
+  /// Positions and frames of the grids of an OP4, MAT, DMIG or f06 file: bulk data (`read_grids`).
   /// Empty: the file of the same name with the extension .asm, or, without it, of a DMIG by statics
   /// from the parent, whose displacement frame is then the body's. Of an f06 its own bulk data
   /// echo, or the file of the same name with .asm, .bdf, .dat or .nas.
@@ -35,12 +35,13 @@ struct Import {
   std::optional<ModalData> body;   ///< in SI, if a parent was named, or the file has modal data
 };
 
-/// Reads a file by its content: OP4 (text or binary), OP2, f06, DMIG punch, modal data as CSV, or one of the four files of CalculiX (.sti, .mas, .dof, .inp). Rows without stiffness
+/// Reads a file by its content: OP4 (text or binary), OP2, f06, DMIG punch, a MAT-file, modal data
+/// as CSV, or one of the four files of CalculiX (.sti, .mas, .dof, .inp). Rows without stiffness
 /// and mass are dropped and listed; the matrices are symmetrised. `text` has the matrices with
 /// sizes and digits, the asymmetry, the mass properties, the stiffness against rigid motions, and
 /// of a body its `modal_report`.
 ///
-/// Rows of an OP4 are six for each grid of the bulk data, in ascending order, then
+/// Rows of an OP4 or a MAT-file are six for each grid of the bulk data, in ascending order, then
 /// scalar points; of an OP2 those of `op2_matrices`. An OP2 without stiffness and mass, and an f06,
 /// give the modes of their run (`op2_modal_data`, `f06_modal_data`), clamped at the parent by the
 /// run.

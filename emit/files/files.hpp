@@ -28,6 +28,13 @@ void write_matlab(const StateSpace& model, const std::filesystem::path& file);
 /// Its state_space(), with its `dense_warnings` as comments at the head.
 void write_matlab(const System& system, const std::filesystem::path& file);
 
+/// A MAT-file of MATLAB and Octave, version 5: `load model.mat` gives A, B, C, D, and the names as
+/// cell arrays states, inputs, outputs. Throws bad_file also if the library was built without
+/// libmatio. O(n^2).
+void write_mat(const StateSpace& model, const std::filesystem::path& file);
+/// Its state_space(), with its `dense_warnings` as a cell array warnings.
+void write_mat(const System& system, const std::filesystem::path& file);
+
 /// A Python module and its arrays: FOLDER/NAME.py, NAME_A.npy, NAME_B.npy, NAME_C.npy, NAME_D.npy.
 /// NAME must be an identifier (bad_value), and no module that numpy imports. `import NAME` gives A,
 /// B, C, D, states, inputs, outputs, transfer(s) and poles(). O(n^2).

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstring>
+#include <titop/blocks/fe/mat.hpp>
 #include <titop/titop.hpp>
 
 #include "support/close.hpp"
@@ -111,6 +112,39 @@ fprintf (f, "%s\n", m.states{:}, m.inputs{:}, m.outputs{:});  fclose (f);
   for (const auto* list : {&m.states, &m.inputs, &m.outputs})
     for (const std::string& name : *list) names += name + "\n";
   CHECK(folder.read("names") == names);
+}
+
+TEST_CASE("Octave loads the MAT-file to the last bit, and writes one with the same matrices") {
+  if (!runs("command -v octave-cli")) return titop_test::skip("Octave is not installed");
+  const StateSpace& m = model().state_space();
+  const Folder folder;
+  try {
+    write_mat(model(), folder.path / "m.mat");
+  } catch (const Error&) {
+    return titop_test::skip("the library was built without libmatio");
+  }
+  folder.write("check.m", R"(
+load ("m.mat");
+f = fopen ("entries", "w");
+for M = {A, B, C, D}  fwrite (f, M{1}, "double");  end
+fclose (f);
+f = fopen ("names", "w");
+fprintf (f, "%s\n", states{:}, inputs{:}, outputs{:});  fclose (f);
+S = sparse (A);
+save ("-v7", "octave.mat", "A", "S");
+save ("-v6", "octave6.mat", "A", "S");
+)");
+  REQUIRE(folder.run("octave-cli --no-init-file check.m") == 0);
+  CHECK(doubles(folder.read("entries")) == entries(m));
+  std::string names;
+  for (const auto* list : {&m.states, &m.inputs, &m.outputs})
+    for (const std::string& name : *list) names += name + "\n";
+  CHECK(folder.read("names") == names);
+  for (const char* file : {"octave.mat", "octave6.mat"}) {
+    const auto all = fe::read_mat(folder.path / file);
+    CHECK(fe::find_matrix(all, "A").value == m.A);
+    CHECK(fe::find_matrix(all, "S").value == m.A);
+  }
 }
 
 TEST_CASE("NumPy reads the model to the last bit and finds its poles and transfer") {
