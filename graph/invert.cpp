@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <titop/graph/closed_form.hpp>
 #include <titop/graph/invert.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <utility>
@@ -67,6 +68,7 @@ struct EquilibratedMatrix {
 }  // namespace
 
 StateSpace model_of(const BlockPtr& block) {
+  require_state_space(*block);
   std::vector<double> none;
   for (const Value& v : block->values())
     if (v.is_parameter()) {

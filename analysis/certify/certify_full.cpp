@@ -16,6 +16,7 @@
 #include <titop/compiler/system/elimination_terms.hpp>
 #include <titop/compiler/system/system.hpp>
 #include <titop/compiler/system/system_data.hpp>
+#include <titop/graph/closed_form.hpp>
 #include <titop/graph/declared.hpp>
 #include <utility>
 
@@ -277,6 +278,7 @@ std::vector<std::string> certification::basic_faults(const Certificate& c, doubl
 }
 
 FullCertificate certify(const System& system, const Full& subject) {
+  require_state_space(system.stage().graph);
   FullCertificate c;
   const bool dense = system.order() <= subject.dense_up_to;
   std::vector<double> omegas;

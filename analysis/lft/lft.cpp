@@ -9,6 +9,7 @@
 #include <titop/analysis/lft/opening.hpp>
 #include <titop/analysis/lft/structured.hpp>
 #include <titop/compiler/system/compile_graph.hpp>
+#include <titop/graph/closed_form.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/linalg/similarity_scaling.hpp>
@@ -139,6 +140,7 @@ std::optional<MatrixXcd> solved_loop(const MatrixXcd& loop, const MatrixXcd& F) 
 }  // namespace
 
 Lft lft(const System& system, const ParameterRanges& ranges) {
+  require_state_space(system.stage().graph);
   const std::vector<detail::IsolatedParameter> list = detail::isolated(system, ranges);
   std::vector<passes::ToOpen> to_open;
   for (const auto& p : list)

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <numbers>
 #include <titop/analysis/reduction/bodies.hpp>
+#include <titop/analysis/reduction/compile_scene.hpp>
 #include <titop/analysis/reduction/oscillators.hpp>
 #include <titop/analysis/reduction/reach_of_data.hpp>
 #include <titop/analysis/reduction/reduction.hpp>
 #include <titop/compiler/system/compile_graph.hpp>
+#include <titop/graph/closed_form.hpp>
 
 /// `compile` for a scene, step by step.
 namespace titop {
@@ -21,10 +23,9 @@ constexpr double kShare = 0.1;         ///< of the accuracy: effects of modes th
 constexpr double kMostOfBodies = 0.3;  ///< of the accuracy: largest error of smaller bodies
 constexpr int kTries = 4;
 
-int states_of(const Diagram& diagram) {
+int states_of(const Graph& graph) {
   int states = 0;
-  for (const Node& n : diagram.graph().nodes)
-    states += static_cast<int>(n.block->interface().states.size());
+  for (const Node& n : graph.nodes) states += static_cast<int>(n.block->interface().states.size());
   return states;
 }
 
@@ -33,15 +34,16 @@ int states_of(const Diagram& diagram) {
 class SceneReduction {
  public:
   /// `finest`: the smallest accuracy that will be required.
-  SceneReduction(const Diagram& diagram, const Scene& scene, const Options& options, double finest)
-      : setting_(scene, options, finest, states_of(diagram)) {
+  SceneReduction(const Graph& whole, const Scene& scene, const Options& options, double finest)
+      : setting_(scene, options, finest, states_of(whole)) {
     detail::check(scene);
-    const Graph graph = detail::restricted(diagram.graph(), scene);
+    const Graph graph = detail::restricted(whole, scene);
     if (graph.inputs.empty() || graph.outputs.empty())
       throw Error(
           Code::bad_value,
           fmt::format("{} has no {}", graph.name, graph.inputs.empty() ? "input" : "output"),
           "a reduced model needs an input and an output: declare both in the diagram");
+    require_state_space(graph);
     compile_model(graph);
     setting_.full = setting_.model;
     setting_.notes = detail::reach_of_data(*setting_.data, scene);
@@ -208,8 +210,13 @@ double seconds_of(const ReducedSystem& m, double omega) {
 
 }  // namespace
 
+ReducedSystem detail::compile_scene(const Graph& graph, const Scene& scene,
+                                    const Options& options) {
+  return SceneReduction(graph, scene, options, scene.accuracy).reach(scene.accuracy);
+}
+
 ReducedSystem compile(const Diagram& diagram, const Scene& scene, const Options& options) {
-  return SceneReduction(diagram, scene, options, scene.accuracy).reach(scene.accuracy);
+  return detail::compile_scene(diagram.graph(), scene, options);
 }
 
 std::vector<WhatIf> what_if(const Diagram& diagram, const Scene& scene,
@@ -226,7 +233,7 @@ std::vector<WhatIf> what_if(const Diagram& diagram, const Scene& scene,
   if (!mistakes.empty()) throw Error(std::move(mistakes));
   std::vector<WhatIf> result;
   if (accuracies.empty()) return result;
-  SceneReduction reduction(diagram, scene, options,
+  SceneReduction reduction(diagram.graph(), scene, options,
                            *std::min_element(accuracies.begin(), accuracies.end()));
   for (const double accuracy : accuracies)
     if (const auto system = reduction.try_reach(accuracy))

@@ -11,6 +11,7 @@
 #include <titop/compiler/solve/factored.hpp>
 #include <titop/compiler/solve/instant.hpp>
 #include <titop/compiler/system/system_data.hpp>
+#include <titop/graph/closed_form.hpp>
 
 namespace titop {
 
@@ -319,6 +320,7 @@ Trajectory move(const System& system, const Excitation& excitation, detail::Held
 }  // namespace
 
 Trajectory simulate(const System& system, const Excitation& excitation, const Simulation& s) {
+  require_state_space(system.stage().graph);
   const Index steps = steps_of(s);
   const VectorXd x0 = start_of(system, s.x0);
   const detail::HeldLaw law(system, excitation, s.step);

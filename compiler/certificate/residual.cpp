@@ -7,6 +7,7 @@
 #include <titop/compiler/certificate/residual.hpp>
 #include <titop/compiler/certificate/surroundings.hpp>
 #include <titop/compiler/solve/evaluate.hpp>
+#include <titop/graph/closed_form.hpp>
 #include <titop/graph/drives.hpp>
 #include <titop/graph/linalg/index.hpp>
 
@@ -297,7 +298,12 @@ struct Residual {
       b.known = b.known && (known(node.state) || C.isZero(0));
       b.add(C, of(node.state), 1, -1);
     }
-    if (m.sparse.empty()) subtract_inputs(node, end, m.D, y.first);
+    if (closed_form_of(*node.block)) {
+      const auto Y = response<double>(*node.block, m, at_hand.s, d.numbers.parameters).Y;
+      subtract_inputs(node, end, Y, y.first);
+    } else if (m.sparse.empty()) {
+      subtract_inputs(node, end, m.D, y.first);
+    }
     for (const Gains& part : m.gains_of_row(y.first)) {
       const int i = input_signal(w, index, part.column);
       b.known = b.known && known(i);

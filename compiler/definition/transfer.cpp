@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <optional>
 #include <titop/compiler/definition/compare.hpp>
 #include <titop/compiler/definition/transfer.hpp>
+#include <titop/graph/closed_form.hpp>
 #include <titop/graph/drives.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/index.hpp>
@@ -86,6 +88,9 @@ struct TransferAssembly {
 void add_block(TransferAssembly& a, const Node& node, int index, std::complex<double> s) {
   const auto d = node.block->dynamics(a.values);
   const auto n = d->A.rows();
+  const std::optional<MatrixXcd> closed = closed_form_of(*node.block)
+                                              ? std::optional(node.block->response(s, a.values).Y)
+                                              : std::nullopt;
   const int end = end_signal(a.graph, index);
   if (node.state >= 0 && a.graph.signals[at(node.state)].active) {
     a.add(s * MatrixXcd::Identity(n, n) - d->A, node.state);
@@ -101,7 +106,9 @@ void add_block(TransferAssembly& a, const Node& node, int index, std::complex<do
     if (node.state >= 0) a.add(-d->C.middleRows(y.first, y.size), node.state);
     for (int i = node.first_signal; i < end; ++i)
       if (const Signal& u = a.graph.signals[at(i)]; u.role == Signal::Role::input)
-        a.add(-d->direct(y.first, u.first, y.size, u.size), i);
+        a.add(closed ? MatrixXcd(-closed->block(y.first, u.first, y.size, u.size))
+                     : MatrixXcd(-d->direct(y.first, u.first, y.size, u.size)),
+              i);
     a.row += y.size;
   }
 }

@@ -10,7 +10,7 @@ namespace titop::loops {
 /// A term of a displacement. The same columns are used on position and on velocity level.
 struct FormColumn {
   enum class Kind {
-    root,        ///< of a free assembly; id: channel of its root point
+    root,        ///< of a free assembly, or a port that moves by itself; id: channel of the point
     angle,       ///< free motion of a joint; id: equation
     prescribed,  ///< double integral of a signal that is no acceleration of a point; id: signal
     states,      ///< the states of a block; id: node

@@ -5,6 +5,7 @@
 #include <titop/compiler/loops/gap.hpp>
 #include <titop/compiler/loops/motion.hpp>
 #include <titop/compiler/passes/union_find.hpp>
+#include <titop/graph/closed_form.hpp>
 #include <titop/graph/drives.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/index.hpp>
@@ -47,7 +48,8 @@ void Motion::add_bodies(ParameterValues values) {
 void Motion::add_body(int index, ParameterValues values) {
   const Node& node = g_.nodes[at(index)];
   const auto& channels = node.block->interface().channels;
-  const auto k = node.block->kinematics(values);
+  const ClosedForm* const closed = closed_form_of(*node.block);
+  const auto k = closed ? closed->undeformed() : node.block->kinematics(values);
   const auto count = static_cast<int>(channels.size());
   for (int i = 0; i < count; ++i) {
     const int point = node.first_channel + i;
@@ -67,6 +69,7 @@ void Motion::add_body(int index, ParameterValues values) {
     e.R = carried ? tau : MatrixXd(tau.rows(), 0);
     e.one_way = tau.rows() != tau.cols() || !(linalg::inverse(tau).rcond > 1e-12);
     if (node.state >= 0) e.own[{FormColumn::Kind::states, index}] = k->Phi[at(i)];
+    if (closed) e.own[{FormColumn::Kind::root, point}] = MatrixXd::Identity(tau.rows(), tau.rows());
     edges_.push_back(std::move(e));
   }
 }

@@ -6,6 +6,7 @@
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/response.hpp>
 #include <titop/compiler/solve/scalar.hpp>
+#include <titop/graph/closed_form.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/pole.hpp>
@@ -46,6 +47,27 @@ solve::BlockResponse<T> response_in_double(const Block& block, const T& s,
     return {std::move(r.X), std::move(r.Y)};
   else
     return {lifted<T>(r.X), lifted<T>(r.Y)};
+}
+
+/// Doubles that hold all digits of T: one, two up to 32 digits, four up to 50.
+template <class T>
+int doubles_of() {
+  const double epsilon = solve::Scalar<T>::epsilon();
+  return epsilon > 1e-17 ? 1 : epsilon > 1e-33 ? 2 : 4;
+}
+
+/// Of a block without a finite state space.
+template <class T>
+solve::BlockResponse<T> closed_response(const ClosedForm& block, const T& s,
+                                        ParameterValues parameters) {
+  solve::BlockResponse<T> r;
+  for (const Eigen::MatrixXcd& part :
+       block.closed_form(solve::Scalar<T>::round(s), parameters, doubles_of<T>())) {
+    if (r.Y.size() == 0) r.Y = Dense<T>::Constant(part.rows(), part.cols(), T(0));
+    r.Y += lifted<T>(part);
+  }
+  r.X.resize(0, r.Y.cols());
+  return r;
 }
 
 template <class T>
@@ -339,6 +361,8 @@ void Resolvent<T>::apply_modes(Index columns, T* r) const {
 template <class T>
 solve::BlockResponse<T> response(const Block& block, const Dynamics& d, const T& s,
                                  ParameterValues parameters) {
+  if (const ClosedForm* closed = closed_form_of(block))
+    return closed_response(*closed, s, parameters);
   if (solve::Scalar<T>::epsilon() > 1e-16) return response_in_double(block, s, parameters);
   if (d.modal) return modal_response(block, *d.modal, s);
   const double states = static_cast<double>(d.A.rows());

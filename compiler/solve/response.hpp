@@ -36,7 +36,8 @@ class Resolvent {
   boost::container::small_vector<Eigen::Index, 4> state_;  ///< of row k of `lu_`; empty: k itself
 };
 
-/// X = (s - A)^-1 B and Y = C X + D: in double and below by the block's own formula, which cancels
+/// X = (s - A)^-1 B and Y = C X + D, or the closed form of a block without a finite state space; s
+/// is that of a number in double. In double and below by the block's own formula, which cancels
 /// least; in finer arithmetic from its modes, or from its matrices with up to 100 digits, if
 /// these cancel, so that all digits of T are right. Throws singular if s is a pole of the block.
 template <class T>

@@ -11,6 +11,7 @@
 #include <titop/compiler/system/system.hpp>
 #include <titop/compiler/system/system_data.hpp>
 #include <titop/compiler/system/transfer_part.hpp>
+#include <titop/graph/closed_form.hpp>
 #include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/support/parallel.hpp>
 
@@ -28,6 +29,7 @@ const Stage& System::stage() const& { return data_->skeleton->stage; }
 const std::vector<Note>& System::notes() const& { return data_->noted(); }
 
 System::Rates System::apply(const VectorXd& x, const VectorXd& u) const {
+  require_state_space(data_->graph());
   if (x.size() != order() || u.size() != static_cast<Eigen::Index>(inputs().size()))
     throw Error(Code::size, fmt::format("apply: x has {} entries, u has {}", x.size(), u.size()),
                 fmt::format("x needs {}, u needs {}", order(), inputs().size()));
@@ -71,6 +73,7 @@ MatrixXd System::static_gain() const {
 }
 
 const detail::DenseModel& System::dense() const {
+  require_state_space(data_->graph());
   std::call_once(data_->dense_once, [&] { data_->dense = detail::dense_model(*this, *data_); });
   return data_->dense;
 }
@@ -84,10 +87,14 @@ const std::vector<std::pair<std::string, double>>& System::dense_seconds() const
 }
 
 void System::write(StateSpace& model, int threads) const {
+  require_state_space(data_->graph());
   detail::write_dense(*data_, model, threads);
 }
 
-void System::write(Descriptor& form) const { detail::write_descriptor(*data_, form); }
+void System::write(Descriptor& form) const {
+  require_state_space(data_->graph());
+  detail::write_descriptor(*data_, form);
+}
 
 Descriptor System::descriptor() const {
   Descriptor form;
