@@ -14,7 +14,7 @@ struct BlockType {
   BlockPtr (*read)(const JsonPlace&, const ReadValue&, const FindBody&);
 };
 
-/// Spring-masses, rigid and flexible bodies, rotors.
+/// Spring-masses, rigid and flexible bodies, rotors, distributed beams.
 std::span<const BlockType> body_types();
 /// Hinges, slides, joints of any axes, bushings.
 std::span<const BlockType> joint_types();

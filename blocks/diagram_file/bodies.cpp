@@ -1,5 +1,6 @@
 #include <titop/blocks/diagram_file/block_types.hpp>
 #include <titop/blocks/diagram_file/mode_values.hpp>
+#include <titop/blocks/exact_beam.hpp>
 #include <titop/blocks/flexible_body.hpp>
 #include <titop/blocks/rigid_body.hpp>
 #include <titop/blocks/rotor.hpp>
@@ -115,10 +116,54 @@ BlockPtr read_flexible_body(const JsonPlace& p, const ReadValue& value, const Fi
   return as_block(own);
 }
 
+void write_optional(const char* key, const std::optional<double>& number, Json& j) {
+  if (number) j[key] = *number;
+}
+
+std::optional<double> read_optional(const JsonPlace& p, const char* key) {
+  if (!p.has(key)) return std::nullopt;
+  return p.at(key).number();
+}
+
+void write_exact_beam(const Block& b, const WriteValue&, const NameBody&, Json& j) {
+  const auto& spec = spec_of<ExactBeam>(b);
+  j["length"] = spec.length;
+  j["section"] = {{"area", spec.section.area},
+                  {"I_y", spec.section.I_y},
+                  {"I_z", spec.section.I_z},
+                  {"J", spec.section.J}};
+  write_optional("I_x", spec.section.I_x, j["section"]);
+  j["material"] = {{"E", spec.material.E}, {"rho", spec.material.rho}};
+  write_optional("nu", spec.material.nu, j["material"]);
+  write_optional("G", spec.material.G, j["material"]);
+  j["damping"] = {{"mass", spec.damping.mass}, {"stiffness", spec.damping.stiffness}};
+}
+
+BlockPtr read_exact_beam(const JsonPlace& p, const ReadValue&, const FindBody&) {
+  p.only({"name", "type", "length", "section", "material", "damping"});
+  const JsonPlace section = p.at("section"), material = p.at("material"), damping = p.at("damping");
+  section.only({"area", "I_y", "I_z", "J", "I_x"});
+  material.only({"E", "nu", "G", "rho"});
+  damping.only({"mass", "stiffness"});
+  return as_block(ExactBeam{.length = p.at("length").number(),
+                            .section = {.area = section.at("area").number(),
+                                        .I_y = section.at("I_y").number(),
+                                        .I_z = section.at("I_z").number(),
+                                        .J = section.at("J").number(),
+                                        .I_x = read_optional(section, "I_x")},
+                            .material = {.E = material.at("E").number(),
+                                         .nu = read_optional(material, "nu"),
+                                         .G = read_optional(material, "G"),
+                                         .rho = material.at("rho").number()},
+                            .damping = {.mass = damping.at("mass").number(),
+                                        .stiffness = damping.at("stiffness").number()}});
+}
+
 constexpr BlockType kBody[] = {{"SpringMass", write_spring_mass, read_spring_mass},
                                {"RigidBody", write_rigid_body, read_rigid_body},
                                {"Rotor", write_rotor, read_rotor},
-                               {"FlexibleBody", write_flexible_body, read_flexible_body}};
+                               {"FlexibleBody", write_flexible_body, read_flexible_body},
+                               {"ExactBeam", write_exact_beam, read_exact_beam}};
 
 }  // namespace
 
