@@ -10,6 +10,8 @@
 #include <titop/analysis/control/zeros.hpp>
 #include <titop/analysis/damping/damping_of_assembly.hpp>
 #include <titop/analysis/damping/structural_damping.hpp>
+#include <titop/analysis/distributed/compare.hpp>
+#include <titop/analysis/distributed/reduce_beams.hpp>
 #include <titop/analysis/lft/derivatives.hpp>
 #include <titop/analysis/lft/lft.hpp>
 #include <titop/analysis/lft/reduced_lft.hpp>
@@ -22,6 +24,7 @@
 #include <titop/blocks/axis.hpp>
 #include <titop/blocks/bushing.hpp>
 #include <titop/blocks/diagram_file/diagram_file.hpp>
+#include <titop/blocks/exact_beam.hpp>
 #include <titop/blocks/fe/beam.hpp>
 #include <titop/blocks/fe/calculix.hpp>
 #include <titop/blocks/fe/dmig.hpp>

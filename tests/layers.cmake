@@ -44,6 +44,8 @@ room(analysis/reduction        compiler/system)
 # Above blocks: it makes bodies of parts of a scene.
 room(analysis/damping          blocks/fe blocks compiler/system analysis/reduction)
 room(analysis/bracket          compiler/system)
+# Above blocks: it divides distributed beams into elements.
+room(analysis/distributed      blocks/fe blocks compiler/system analysis/reduction)
 room(analysis/norms)
 # Deeper than System: it cuts diagrams at loop points.
 room(analysis/control          compiler/passes compiler/minreal compiler/system analysis/norms
@@ -80,9 +82,10 @@ internal(compiler/system/system_data.hpp analysis/certify/certify_full.cpp
          analysis/reduction/coordinates.hpp analysis/reduction/reach_of_data.hpp
          analysis/simulation/simulate.cpp emit/cpp/form.cpp)
 # analysis/reduction/ compiles diagrams that it has rewritten, analysis/lft/ opened ones,
-# analysis/damping/ parts of them, analysis/control/ diagrams cut at loop points.
+# analysis/damping/ parts of them, analysis/control/ diagrams cut at loop points,
+# analysis/distributed/ those with finite beams.
 internal(compiler/system/compile_graph.hpp analysis/certify/ analysis/reduction/ analysis/lft/
-         analysis/damping/ analysis/control/)
+         analysis/damping/ analysis/control/ analysis/distributed/)
 # analysis/certify/ measures differences beside the rounding of the elimination.
 internal(compiler/system/elimination_terms.hpp analysis/certify/)
 
