@@ -18,6 +18,7 @@
 #include <titop/analysis/norms/h2.hpp>
 #include <titop/analysis/norms/hinf.hpp>
 #include <titop/analysis/reduction/reduced_system.hpp>
+#include <titop/analysis/shapes/mode_shapes.hpp>
 #include <titop/analysis/simulation/hold.hpp>
 #include <titop/analysis/simulation/simulate.hpp>
 #include <titop/analysis/sweep/sweep.hpp>

@@ -1,5 +1,6 @@
 // A compiled scene as a document: one HTML page to read on a screen, to print, and to hand over. It
 // needs nothing but itself, and Graphviz's dot while it is written.
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <titop/titop.hpp>
@@ -57,4 +58,13 @@ int main() {
   std::printf("scripts: %d, addresses elsewhere: %d\n", count(page, "<script"),
               count(page, "http:") + count(page, "https:") + count(page, "src="));
   std::printf("all checks hold: %s\n", count(page, "All checks hold") ? "yes" : "no");
+
+  // One of its pictures by itself: the first mode that bends the mast.
+  const std::vector<Pole> poles = system.poles();
+  const auto bends = [](const Pole& p) { return p.pair && p.blocks.front().first == "mast"; };
+  const auto mode = std::find_if(poles.begin(), poles.end(), bends) - poles.begin();
+  write_plot(plot_mode(system, static_cast<int>(mode)), "mode.svg");
+  const int place[] = {static_cast<int>(mode)};
+  const ModeShapes shapes = mode_shapes(system, place);
+  std::printf("mode.svg: %zu points, %zu lines\n", shapes.points.size(), shapes.lines.size());
 }

@@ -50,6 +50,8 @@ room(analysis/norms)
 # Deeper than System: it cuts diagrams at loop points.
 room(analysis/control          compiler/passes compiler/minreal compiler/system analysis/norms
                                analysis/simulation analysis/reduction)
+# Deeper than System: places of points are in the equations between accelerations.
+room(analysis/shapes           compiler/passes compiler/loops compiler/minreal compiler/system)
 # Deeper than System: it opens parameters, and counts occurrences in exact arithmetic.
 room(analysis/lft              compiler/passes compiler/definition compiler/system analysis/norms
                                analysis/reduction)
@@ -62,7 +64,8 @@ room(emit/cpp                  compiler/realization compiler/system analysis/sim
                                analysis/certify emit/text)
 # Deeper than System: it draws System::stage(), a type of compiler/passes.
 room(emit/report               compiler/passes compiler/diagram compiler/system analysis/simulation
-                               analysis/certify analysis/reduction analysis/control emit/text)
+                               analysis/certify analysis/reduction analysis/control analysis/shapes
+                               emit/text)
 # Exact scenes have answers that the library has no part in.
 room(app/generate              emit/text)
 room(app/generate/diagrams     blocks/fe blocks app/generate)
@@ -83,9 +86,9 @@ internal(compiler/system/system_data.hpp analysis/certify/certify_full.cpp
          analysis/simulation/simulate.cpp emit/cpp/form.cpp)
 # analysis/reduction/ compiles diagrams that it has rewritten, analysis/lft/ opened ones,
 # analysis/damping/ parts of them, analysis/control/ diagrams cut at loop points,
-# analysis/distributed/ those with finite beams.
+# analysis/distributed/ those with finite beams, analysis/shapes/ those with all points as outputs.
 internal(compiler/system/compile_graph.hpp analysis/certify/ analysis/reduction/ analysis/lft/
-         analysis/damping/ analysis/control/ analysis/distributed/)
+         analysis/damping/ analysis/control/ analysis/distributed/ analysis/shapes/)
 # analysis/certify/ measures differences beside the rounding of the elimination.
 internal(compiler/system/elimination_terms.hpp analysis/certify/)
 

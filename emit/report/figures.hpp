@@ -3,8 +3,10 @@
 #include <optional>
 #include <string>
 #include <titop/analysis/control/margins.hpp>
+#include <titop/analysis/shapes/mode_shapes.hpp>
 #include <titop/emit/report/pairs.hpp>
 #include <titop/emit/report/plot.hpp>
+#include <titop/emit/report/plots.hpp>
 #include <titop/emit/report/sweep.hpp>
 #include <vector>
 
@@ -30,5 +32,7 @@ Plot nyquist_plot(const ControlLoop& loop, const Margins& margins,
                   const std::vector<double>& omega);
 std::optional<Plot> sigma_plot(const Sweep& sweep, const std::vector<UnitGroup>& outputs,
                                const std::vector<UnitGroup>& inputs);
+/// One of the modes, by its place in ModeShapes::modes. Throws bad_value for invalid options.
+Plot mode_plot(const ModeShapes& shapes, std::size_t which, const ModePlotOptions& options);
 
 }  // namespace titop::report

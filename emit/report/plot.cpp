@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kWidth = 520, kLeft = 66, kRight = 14, kTop = 8, kGap = 12, kBottom = 40;
 constexpr double kInner = kWidth - kLeft - kRight;
+static_assert(kInner == kPlotWidth);
 
 struct Tick {
   double value = 0;
@@ -25,6 +26,7 @@ class Scale {
       log_range();
     else
       linear_range();
+    if (axis.hidden) ticks_.clear(), fine_.clear();
   }
 
   /// 0 at the low end, 1 at the high one; clamped to [-0.5, 1.5].
@@ -231,6 +233,12 @@ std::string draw(const Plot& plot, const Frame& frame, const Scale& across, doub
     text += fmt::format(R"(<text class="tick" x="{}" y="{:.1f}" text-anchor="end">{}</text>)",
                         kLeft - 6, top + frame.height * (1 - up.place(t.value)) + 4, t.text);
   const double middle = top + frame.height / 2.0;
+  for (const PlotText& t : frame.texts)
+    text +=
+        fmt::format(R"(<text class="tick" x="{:.1f}" y="{:.1f}" text-anchor="middle">{}</text>)",
+                    kLeft + kInner * across.place(t.x),
+                    top + frame.height * (1 - up.place(t.y)) + 4, diagram::html(t.text));
+  if (frame.y.hidden) return text;
   text += fmt::format(
       R"-(<text class="y-label" x="14" y="{0}" text-anchor="middle" transform="rotate(-90 14 {0})">{1}</text>)-",
       middle, diagram::html(up.title()));
@@ -281,6 +289,7 @@ Drawn drawn(const Plot& plot) {
     top += frame.height + kGap;
   }
   const double bottom = top - kGap;
+  if (plot.x.hidden) return {std::move(frames), kWidth, bottom + kTop};
   for (const Tick& t : across.ticks())
     frames += fmt::format(R"(<text class="tick" x="{:.1f}" y="{}" text-anchor="middle">{}</text>)",
                           kLeft + kInner * across.place(t.value), bottom + 16, t.text);

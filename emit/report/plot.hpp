@@ -13,10 +13,19 @@ struct PlotAxis {
   bool log = false;
   bool degrees = false;      ///< ticks at multiples of 45, 90, 180
   double low = 0, high = 0;  ///< equal: from the data
+  bool hidden = false;       ///< without ticks, grid and title
 };
 
 /// How the points of a curve are drawn: joined, or each by itself.
 enum class PointStyle { line, cross, circle };
+
+/// A text in a frame, centred at a point of its axes.
+struct PlotText {
+  double x = 0, y = 0;
+  std::string text;
+};
+
+constexpr int kPlotWidth = 440;  ///< of a frame, in pixels
 
 /// Curves in one frame.
 struct Frame {
@@ -24,6 +33,7 @@ struct Frame {
   std::vector<std::vector<double>> curves;  ///< y of each, over its x
   int height = 190;
   std::vector<PointStyle> marks = {};  ///< of each curve; fewer: lines
+  std::vector<PlotText> texts = {};
 };
 
 /// Frames below each other over one x axis.

@@ -112,6 +112,11 @@ std::string plot_poles(const System& system, const PlotOptions& options) {
   return finished(std::move(plot), options);
 }
 
+std::string plot_mode(const System& system, int pole, const ModePlotOptions& options) {
+  const int wanted[] = {pole};
+  return report::standalone(report::mode_plot(mode_shapes(system, wanted), 0, options));
+}
+
 void write_plot(const std::string& svg, const std::filesystem::path& file) {
   emit::write_file(file, svg);
 }

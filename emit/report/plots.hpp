@@ -40,6 +40,20 @@ std::string plot_nyquist(const ControlLoop& loop, const PlotOptions& options = {
 /// frequency. O(n^3).
 std::string plot_poles(const System& system, const PlotOptions& options = {});
 
+/// Options of plot_mode.
+struct ModePlotOptions {
+  std::string title = {};  ///< empty: the frequency
+  /// Direction of the viewer, z being up [deg]: 0, 0 looks along -x, 0, 90 from above.
+  double azimuth = -60, elevation = 30;
+  double amplitude = 0.15;  ///< largest displacement as drawn, relative to the structure's size
+};
+
+/// The structure in a mode, given by its place in system.poles(): the ports of its bodies at rest
+/// and displaced (`mode_shapes`), lines between the ports of each body. The caption has frequency,
+/// damping, and what has no position. Throws the errors of mode_shapes, and bad_value for options
+/// that are not finite or an amplitude that is not positive. Cost: that of mode_shapes.
+std::string plot_mode(const System& system, int pole, const ModePlotOptions& options = {});
+
 /// Writes a plot to a file. Throws bad_file.
 void write_plot(const std::string& svg, const std::filesystem::path& file);
 

@@ -40,6 +40,7 @@ std::string report_html(const System& system, const ReportOptions& options) {
   std::vector<ReportSection> sections = {
       {"scene", "The scene", report::scene_section(s)},
       {"poles", "Poles", report::poles_section(s)},
+      {"modes", "Mode shapes", report::modes_section(s)},
       {"frequency", "Frequency responses", std::move(responses.frequency)},
       {"time", "Step responses", std::move(responses.time)},
       {"margins", "Stability margins", report::margins_section(s)},

@@ -25,17 +25,18 @@ struct ReportOptions {
   /// Units of inputs and outputs, if they do not follow from the connected ports (behind a gain, of
   /// a controller's signals): {"r", "rad"}, or of one scalar, {"U(3)", "N"}.
   std::vector<std::pair<std::string, std::string>> units = {};
-  /// Up to this many states (System::order()) the full certificate and the margins of loop points
-  /// are made, too: O(n^3).
+  /// Up to this many states (System::order()) the full certificate, mode shapes and the margins of
+  /// loop points are made, too: O(n^3).
   int full_up_to = 100;
 };
 
 /// A report as one self-contained HTML text: no script, no network. It contains the scene before
 /// and after the passes, inputs and outputs with their units, poles with the blocks that take part,
-/// singular values, Bode plots and step responses, margins and Nyquist curves of loop points (up to
-/// ReportOptions::full_up_to states), the certificate in words, the order with the
-/// removed states and the reasons, and result and time of every pass. All text of any origin is
-/// escaped. For screens, light and dark, and for paper; lines also differ without colour.
+/// shapes of the six slowest modes (of the band, if given), singular values, Bode plots and step
+/// responses, margins and Nyquist curves of loop points (up to ReportOptions::full_up_to states),
+/// the certificate in words, the order with the removed states and the reasons, and result and time
+/// of every pass. All text of any origin is escaped. For screens, light and dark, and for paper;
+/// lines also differ without colour.
 ///
 /// The text is the same on every run except for the times and for the drawings of another version
 /// of Graphviz.

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <titop/compiler/diagram/text.hpp>
 #include <titop/emit/report/plot.hpp>
 
@@ -23,6 +24,21 @@ constexpr double kLine = 20, kColumn = 250;
 
 std::string text_at(const char* cls, double x, double y, const std::string& text) {
   return fmt::format(R"(<text class="{}" x="{}" y="{}">{}</text>)", cls, x, y, diagram::html(text));
+}
+
+/// Lines of a text that fit into the picture, parted at spaces.
+std::vector<std::string> lines_of(const std::string& text) {
+  constexpr std::size_t kMost = 84;  // of 6 pixels on average
+  std::vector<std::string> lines;
+  std::size_t from = 0;
+  while (text.size() - from > kMost) {
+    std::size_t end = text.rfind(' ', from + kMost);
+    if (end == std::string::npos || end <= from) end = std::min(text.find(' ', from), text.size());
+    lines.push_back(text.substr(from, end - from));
+    from = std::min(end + 1, text.size());
+  }
+  if (from < text.size()) lines.push_back(text.substr(from));
+  return lines;
 }
 
 /// The sample of a curve in the legend.
@@ -49,9 +65,11 @@ std::string standalone(const Plot& plot) {
     if (i % 2 == 0) y += kLine;
     body += sample(plot, i, x, y) + text_at("tick", x + 42, y, plot.labels[i]);
   }
-  const double top = y + 8, bottom = plot.caption.empty() ? 0 : kLine;
+  const std::vector<std::string> caption = lines_of(plot.caption);
+  const double top = y + 8, bottom = kLine * static_cast<double>(caption.size());
   body += fmt::format(R"-(<g transform="translate(0 {})">{}</g>)-", top, d.svg);
-  if (bottom > 0) body += text_at("tick", 14, top + d.height + 12, plot.caption);
+  for (std::size_t i = 0; i < caption.size(); ++i)
+    body += text_at("tick", 14, top + d.height + 12 + kLine * static_cast<double>(i), caption[i]);
   return fmt::format(
       R"-(<svg xmlns="http://www.w3.org/2000/svg" width="{0}" height="{1}" viewBox="0 0 {0} {1}"><title>{2}</title><style>{3}</style><rect class="paper" width="{0}" height="{1}"/>{4}</svg>)-"
       "\n",

@@ -124,6 +124,17 @@ void bind_plots(py::module_& m) {
       },
       "system"_a, py::kw_only(), "title"_a = "", "band_hz"_a = Band{0, 0}, Unlocked(),
       "Poles and transmission zeros, as SVG; band [Hz].");
+  m.def(
+      "plot_mode",
+      [](const System& s, int pole, const std::string& title, double azimuth, double elevation,
+         double amplitude) {
+        return plot_mode(s, pole, {title, azimuth, elevation, amplitude});
+      },
+      "system"_a, "pole"_a, py::kw_only(), "title"_a = "", "azimuth"_a = ModePlotOptions{}.azimuth,
+      "elevation"_a = ModePlotOptions{}.elevation, "amplitude"_a = ModePlotOptions{}.amplitude,
+      Unlocked(),
+      "The structure in the mode of this place in system.poles(), as SVG: its points at rest and\n"
+      "displaced, seen from this direction [deg], the largest displacement relative to its size.");
 }
 
 }  // namespace

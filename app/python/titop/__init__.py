@@ -19,7 +19,7 @@ from ._titop import *
 from ._titop import fe
 from .errors import CompileWarning, Error, Mistake
 from .control import control
-from .pictures import (Report, Svg, plot_bode, plot_nyquist, plot_poles, plot_sigma, plot_step,
-                       report)
+from .pictures import (Report, Svg, plot_bode, plot_mode, plot_nyquist, plot_poles, plot_sigma,
+                       plot_step, report)
 
 _sys.modules[__name__ + ".fe"] = fe

@@ -32,6 +32,7 @@ plot_step = _picture(_titop.plot_step)
 plot_sigma = _picture(_titop.plot_sigma)
 plot_nyquist = _picture(_titop.plot_nyquist)
 plot_poles = _picture(_titop.plot_poles)
+plot_mode = _picture(_titop.plot_mode)
 
 
 class Report:
