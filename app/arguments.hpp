@@ -11,6 +11,7 @@ namespace titop::command_line {
 struct Arguments {
   std::vector<std::string> words;  ///< without options
   bool compiled = false, diagrams = true;
+  int mode = 0;   ///< of draw: line of the table of poles, from 1; 0: the diagram
   int fold = -1;  ///< not given
   std::string to;
   std::string parent, children, grids, matrices;
@@ -45,6 +46,6 @@ Arguments parse(const std::vector<std::string>& all);
 std::vector<std::string> separated(const std::string& list);
 
 /// The text of titop --help, without that of `generate`.
-extern const char* const kUsage;
+std::string usage();
 
 }  // namespace titop::command_line

@@ -70,7 +70,19 @@ std::string drawn(const std::string& text, const std::string& file, const std::s
                       : std::vector{dot.err.substr(0, dot.err.find('\n'))});
 }
 
+/// The structure in the mode of a line of the table of poles.
+void draw_mode(const Arguments& a) {
+  if (fs::path(a.words[2]).extension() != ".svg") throw unknown_ending(a);
+  if (a.compiled || a.fold >= 0) throw Misuse{"draw --mode takes neither --compiled nor --fold"};
+  const System system = compiled(a);
+  if (const std::size_t lines = system.poles().size(); static_cast<std::size_t>(a.mode) > lines)
+    throw Error(Code::unknown_name, fmt::format("--mode {}: there is no such pole", a.mode),
+                fmt::format("the table of titop compile has {} lines", lines));
+  write_plot(plot_mode(system, a.mode - 1), a.words[2]);
+}
+
 void draw(const Arguments& a) {
+  if (a.mode > 0) return draw_mode(a);
   const std::string kind = fs::path(a.words[2]).extension().string();
   const bool picture = kind == ".svg" || kind == ".png" || kind == ".pdf";
   if (!picture && !kind.empty() && kind != ".dot" && kind != ".gv") throw unknown_ending(a);
@@ -186,7 +198,7 @@ constexpr Command kCommands[] = {
     {"check", 2, 2, done<check>, kModel},
     {"compile", 2, 2, done<show>, kModel},
     {"certify", 2, 2, certify_scene, " --set --minimize-up-to -o "},
-    {"draw", 3, 2, done<draw>, " --set --compiled --fold --minimize-up-to "},
+    {"draw", 3, 2, done<draw>, " --set --compiled --fold --mode --minimize-up-to "},
     {"report", 2, 2, done<report>,
      " --set --fold -o --band --until --no-diagrams --minimize-up-to "},
     {"export", 3, 2, done<export_model>, kModel},
@@ -205,11 +217,11 @@ bool asks_for_help(const std::vector<std::string>& all) {
   return typed("--help") || typed("-h") || (!all.empty() && all[0] == "help");
 }
 
-std::string usage() { return fmt::format("{}{}", command_line::kUsage, generate::kUsage); }
+std::string whole_usage() { return command_line::usage() + generate::kUsage; }
 
 int run(const std::vector<std::string>& all) {
   if (asks_for_help(all)) {
-    std::fputs(usage().c_str(), stdout);
+    std::fputs(whole_usage().c_str(), stdout);
     return 0;
   }
   if (all.size() == 1 && all[0] == "--version") {

@@ -350,7 +350,8 @@ TEST_CASE("the manual page names every command of --help, and no other") {
   std::ifstream file(TITOP_SOURCE_DIR "/docs/titop.1");
   std::set<std::string> documented, existing;
   for (std::string line, before; std::getline(file, line); before = line)
-    if (before == ".TP" && line.starts_with(".B ")) documented.insert(line.substr(3));
+    if (before == ".TP" && line.starts_with(".B ") && !line.starts_with(".B -"))
+      documented.insert(line.substr(3));
   std::istringstream help(shell.titop("--help").out);
   for (std::string line; std::getline(help, line);)
     if (std::istringstream words(line); line.starts_with("  titop ")) {
@@ -360,4 +361,41 @@ TEST_CASE("the manual page names every command of --help, and no other") {
     }
   CHECK(existing.size() >= 12);
   CHECK(documented == existing);
+}
+
+TEST_CASE("the manual page names every option of --help, and no other") {
+  const Shell shell;
+  std::ifstream file(TITOP_SOURCE_DIR "/docs/titop.1");
+  std::set<std::string> documented, existing;
+  for (std::string line, before; std::getline(file, line); before = line)
+    if (before == ".TP" && (line.starts_with(".BI -") || line.starts_with(".B -")))
+      documented.insert(
+          line.substr(line.find('-'), line.find(' ', line.find('-')) - line.find('-')));
+  std::istringstream help(shell.titop("--help").out);
+  for (std::string line; std::getline(help, line);)
+    if (line.starts_with("  -")) existing.insert(line.substr(2, line.find(' ', 2) - 2));
+  CHECK(existing.size() >= 25);
+  CHECK(documented == existing);
+}
+
+TEST_CASE("draw --mode: the structure in the mode of a line of the table") {
+  const Shell shell;
+  Diagram d{"boom"};
+  auto u = d.input("push");
+  auto boom =
+      d.add("boom", FlexibleBody{modal_data(Beam{.length = 1,
+                                                 .section = rectangle(0.02, 0.01),
+                                                 .material = {.E = 7e10, .nu = 0.3, .rho = 2700},
+                                                 .elements = 2})});
+  ground(boom);
+  boom.child.force.along({0, 0, 1}) += u;
+  d.output("tip") = boom.child.accel.along({0, 0, 1});
+  write_diagram(d, shell.folder.path / "boom.json");
+  CHECK(shell.titop("draw --mode 1 boom.json mode.svg").code == 0);
+  CHECK(shell.folder.read("mode.svg") == plot_mode(compile(d), 0));
+  CHECK(has(shell.titop("draw --mode 9 boom.json mode.svg").err, "--mode 9"));
+  CHECK(shell.titop("draw --mode 1 boom.json mode.png").code == 2);
+  CHECK(shell.titop("draw --mode 0 boom.json mode.svg").code == 2);
+  CHECK(shell.titop("draw --mode 1 --compiled boom.json mode.svg").code == 2);
+  CHECK(shell.titop("draw --mode 1 masses.json mode.svg").code == 1);  // no point in space
 }
