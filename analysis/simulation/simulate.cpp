@@ -312,6 +312,7 @@ Trajectory move(const System& system, const Excitation& excitation, detail::Held
     motion.look({k, k == steps, x, u.first, y, xdot});
     if (k == steps) break;
     x = motion.step(x, u.first, u.second);
+    if (s.progress) s.progress(static_cast<std::size_t>(k + 1), static_cast<std::size_t>(steps));
   }
   result.error = motion.error();
   return result;

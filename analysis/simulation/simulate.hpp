@@ -86,6 +86,9 @@ struct Simulation {
   /// replaced by midpoint. Use infinity for outputs that no motion has reached yet (far down a
   /// chain): no digit of them is correct.
   double accuracy = 0.01;
+  /// Called with (done, all) after each step: `progress_line()` draws it. From the beginning again
+  /// if the automatic choice replaces the exact stepper by midpoint.
+  std::function<void(std::size_t, std::size_t)> progress = {};
 };
 
 /// Result of `simulate`, a column per time.

@@ -25,14 +25,14 @@ std::string text_of(double seconds) {
 
 class ProgressLine {
  public:
-  explicit ProgressLine(std::FILE* to) : to_(to) {}
+  ProgressLine(std::FILE* to, std::string counted) : to_(to), counted_(std::move(counted)) {}
 
   void show(std::size_t done, std::size_t all) {
     const Clock::time_point now = Clock::now();
     if (done < all && Seconds(now - drawn_).count() < kBetween) return;
     drawn_ = now;
     const double taken = Seconds(now - begun_).count(), part = double(done) / double(all);
-    std::string text = fmt::format("{} of {} points, {} %, ", done, all, 100 * done / all);
+    std::string text = fmt::format("{} of {} {}, {} %, ", done, all, counted_, 100 * done / all);
     text += done < all ? text_of(taken * (1 / part - 1)) + " left" : text_of(taken);
     const std::size_t before = std::exchange(size_, text.size());
     if (before > size_) text.append(before - size_, ' ');  // erases the line before
@@ -42,17 +42,18 @@ class ProgressLine {
 
  private:
   std::FILE* to_;
+  std::string counted_;
   Clock::time_point begun_ = Clock::now(), drawn_ = begun_;
   std::size_t size_ = 0;
 };
 
 }  // namespace
 
-std::function<void(std::size_t, std::size_t)> progress_line(std::FILE* to, DrawLine draw) {
+std::function<void(std::size_t, std::size_t)> progress_line(std::FILE* to, DrawLine draw,
+                                                            std::string counted) {
   if (draw == DrawLine::on_terminals && !isatty(fileno(to))) return [](std::size_t, std::size_t) {};
-  return [line = std::make_shared<ProgressLine>(to)](std::size_t done, std::size_t all) {
-    line->show(done, all);
-  };
+  return [line = std::make_shared<ProgressLine>(to, std::move(counted))](
+             std::size_t done, std::size_t all) { line->show(done, all); };
 }
 
 }  // namespace titop

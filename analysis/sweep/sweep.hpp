@@ -32,16 +32,17 @@ enum class DrawLine {
   always,
 };
 
-/// A line for SweepOptions::progress, drawn over itself at most five times a second; its last state
-/// has a newline.
+/// A line for SweepOptions::progress and Simulation::progress, drawn over itself at most five times
+/// a second; its last state has a newline.
 ///
 ///     sweep(s, points, visit, {.progress = progress_line()});
 ///
 ///     117 of 400 points, 29 %, 12 s left
 ///
 /// The time left is extrapolated from the points done, counted from the construction of the line:
-/// one for each sweep. `to` must stay open.
+/// one for each sweep. `to` must stay open. `counted`: "points", "steps".
 std::function<void(std::size_t, std::size_t)> progress_line(std::FILE* to = stderr,
-                                                            DrawLine draw = DrawLine::on_terminals);
+                                                            DrawLine draw = DrawLine::on_terminals,
+                                                            std::string counted = "points");
 
 }  // namespace titop

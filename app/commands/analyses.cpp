@@ -174,7 +174,10 @@ void simulate_inputs(const Arguments& a) {
     throw Misuse{"simulate takes --record or --unit-step, not both"};
   const System system = compiled(a);
   const Trajectory t =
-      simulate(system, excitation_of(system, a), {.step = a.step, .until = a.until});
+      simulate(system, excitation_of(system, a),
+               {.step = a.step,
+                .until = a.until,
+                .progress = progress_line(stderr, DrawLine::on_terminals, "steps")});
   std::vector<std::string> names = {"time"};
   names.insert(names.end(), t.outputs.begin(), t.outputs.end());
   std::string text = emit::csv_line(names) + "\n";

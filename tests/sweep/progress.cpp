@@ -84,3 +84,23 @@ TEST_CASE("progress_line: a sweep calls it on its threads") {
   const std::string text = to.text();
   CHECK(titop_test::has_names(text.substr(text.rfind('\r')), {"64", "100 %"}));
 }
+
+TEST_CASE("progress_line: a simulation calls it after each step") {
+  Diagram d{"mass"};
+  auto u = d.input("u");
+  auto z = d.add("z", SpringMass{.mass = 1, .stiffness = 4});
+  ground(z);
+  z.child.force = u;
+  d.output("x") = z.stretch;
+  std::vector<std::size_t> seen;
+  const File to;
+  const auto line = progress_line(to.file, DrawLine::always, "steps");
+  const auto show = [&](std::size_t done, std::size_t all) {
+    CHECK(all == 50);
+    seen.push_back(done), line(done, all);
+  };
+  simulate(compile(d), Excitation::none(), {.step = 0.1, .until = 5, .progress = show});
+  REQUIRE(seen.size() == 50);
+  CHECK((seen.front() == 1 && seen.back() == 50));
+  CHECK(to.text().find("50 of 50 steps, 100 %") != std::string::npos);
+}
