@@ -9,6 +9,7 @@
 #include <titop/emit/text/write_file.hpp>
 
 #include "commands/diagram.hpp"
+#include "commands/ranks.hpp"
 #include "commands/table.hpp"
 
 namespace titop::command_line {
@@ -135,6 +136,54 @@ std::vector<std::string> columns_of(const System& system, const Arguments& a,
   return names;
 }
 
+/// Rows of a sweep: the lines of their results, and the errors of those that are refused.
+struct SweptRows {
+  std::string lines, faults;
+};
+
+/// Each row for itself: one that is refused leaves the others.
+SweptRows swept(const System& system, const Table& table, const Arguments& a, const Ranks& ranks) {
+  const auto [from, to] = part_of(a, table.rows.size());
+  const auto [begin, end] = ranks.part(from, to);
+  std::vector<std::string> lines(end - begin), faults(end - begin);
+  const auto visit = [&, begin = begin](std::size_t i, const System&) {
+    const std::vector<double>& row = table.rows[begin + i];
+    const std::string point = fmt::format("{},{}", begin + i + 1, fmt::join(row, ","));
+    try {
+      const System at = system.update(point_of(table, row));
+      lines[i] = a.omega.empty() ? poles_at(at, point) : responses_at(at, a.omega, point);
+    } catch (const Error& error) {
+      faults[i] = fmt::format("{}: {}\n", table.place(begin + i), error.what());
+    }
+  };
+  SweepOptions options;
+  if (ranks.first()) options.progress = progress_line();
+  sweep(system, std::vector<ParameterList>(lines.size()), visit, options);
+  return {fmt::format("{}", fmt::join(lines, "")), fmt::format("{}", fmt::join(faults, ""))};
+}
+
+/// By all processes; the first one writes the file and the errors.
+int sweep_of(const Arguments& a, const Ranks& ranks) {
+  require_csv(a.words[2]);
+  require_csv(a.words[3]);
+  const Table table = read_table(a.words[2]);
+  const System system = compiled(a);
+  require_parameters(system, table);
+  const std::string names = emit::csv_line(columns_of(system, a, table.names)) + "\n";
+  SweptRows rows;
+  try {
+    rows = swept(system, table, a, ranks);
+  } catch (const std::exception& error) {
+    ranks.abort(error.what());
+    throw;
+  }
+  const std::string lines = ranks.joined(rows.lines), faults = ranks.joined(rows.faults);
+  if (!ranks.first()) return 0;
+  emit::write_file(a.words[3], names + lines);
+  std::fputs(faults.c_str(), stderr);
+  return faults.empty() ? 0 : 1;
+}
+
 /// A pole right of the axis by more than the rounding of its modulus.
 bool has_unstable_pole(const System& system) {
   constexpr double kRight = 1e-9;
@@ -194,30 +243,13 @@ void simulate_inputs(const Arguments& a) {
 }
 
 int sweep_table(const Arguments& a) {
-  require_csv(a.words[2]);
-  require_csv(a.words[3]);
-  const Table table = read_table(a.words[2]);
-  const auto [begin, end] = part_of(a, table.rows.size());
-  const System system = compiled(a);
-  require_parameters(system, table);
-  std::string text = emit::csv_line(columns_of(system, a, table.names)) + "\n";
-  // Each row for itself: one that is refused leaves the others.
-  std::vector<std::string> lines(end - begin), faults(end - begin);
-  const auto visit = [&, begin = begin](std::size_t i, const System&) {
-    const std::vector<double>& row = table.rows[begin + i];
-    const std::string point = fmt::format("{},{}", begin + i + 1, fmt::join(row, ","));
-    try {
-      const System at = system.update(point_of(table, row));
-      lines[i] = a.omega.empty() ? poles_at(at, point) : responses_at(at, a.omega, point);
-    } catch (const Error& error) {
-      faults[i] = fmt::format("{}: {}\n", table.place(begin + i), error.what());
-    }
-  };
-  sweep(system, std::vector<ParameterList>(lines.size()), visit, {.progress = progress_line()});
-  for (const std::string& line : lines) text += line;
-  emit::write_file(a.words[3], text);
-  for (const std::string& fault : faults) std::fputs(fault.c_str(), stderr);
-  return std::all_of(faults.begin(), faults.end(), [](auto& f) { return f.empty(); }) ? 0 : 1;
+  const Ranks ranks;
+  try {
+    return sweep_of(a, ranks);
+  } catch (...) {  // before the sweep: all processes have the same error
+    if (ranks.first()) throw;
+    return 1;
+  }
 }
 
 void reduce_scene(const Arguments& a) {

@@ -13,8 +13,9 @@ int margins_of_loops(const Arguments& a);
 void simulate_inputs(const Arguments& a);
 
 /// sweep: poles, or with --omega frequency responses, of every point of a table of parameter
-/// values as CSV, of the rows of --part only. Rows that are refused are reported on stderr and left
-/// out; returns the exit code, 1 if there are any.
+/// values as CSV, of the rows of --part only; under mpirun (TITOP_MPI) each process has a part of
+/// them, and the first one writes the file, the same as of one process. Rows that are refused are
+/// reported on stderr and left out; returns the exit code, 1 if there are any.
 int sweep_table(const Arguments& a);
 
 /// reduce: the reduced model of a scene as .m, .py or .hpp; prints its steps and its bound.
