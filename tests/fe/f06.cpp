@@ -79,7 +79,7 @@ struct TipMass {
     own << v(1), v(2), v(0), v(4), v(5), v(3);
     return own;
   }
-  /// What a run may print otherwise.
+  /// Variations of the printed tables.
   struct Print {
     bool vectors = true, forces = true, factors = true, rigid = true, weight = false;
     double share = 1;  ///< of the forces that grid 7 takes
