@@ -18,10 +18,8 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
-constexpr int kFar = 10;               ///< pairs of poles in place of all beyond twice the band
-constexpr double kNearlyZero = 1e-6;   ///< of the size of its input and output: a pair that is 0
-constexpr double kStart = 1e-6;        ///< of the band's upper end, in place of lower frequencies
-constexpr double kOfTransfer = 1e-12;  ///< accuracy of each transfer
+constexpr int kFar = 10;         ///< pairs of poles in place of all beyond twice the band
+constexpr double kStart = 1e-6;  ///< of the band's upper end, in place of lower frequencies
 
 /// Frequencies of the band at which two models with poles like these can differ most.
 std::vector<double> points(const Scene& scene, const std::vector<Complex>& poles) {
@@ -38,7 +36,7 @@ std::vector<double> points(const Scene& scene, const std::vector<Complex>& poles
 /// Pairs that are nearly 0 count as much as 1e-6 of their input and output.
 MatrixXd with_floor(const MatrixXd& peak) {
   const auto [out, in] = detail::port_sizes(peak);
-  const MatrixXd size = peak.cwiseMax(kNearlyZero * out * in);
+  const MatrixXd size = peak.cwiseMax(detail::kNearlyZero * out * in);
   return (peak.array() > 0).select(size, (size.array() > 0).select(size, 1));
 }
 
@@ -72,7 +70,7 @@ ErrorBound difference(const TransferAt& finite, const System& exact, const Scene
     if (e.maxCoeff() > b.pairs.maxCoeff()) b.hertz = omega[k] / (2 * std::numbers::pi);
     b.pairs = b.pairs.cwiseMax(e);
   }
-  b.pairs = b.pairs.array() / std::cos(detail::kPhase / 2) + kOfTransfer;
+  b.pairs = b.pairs.array() / std::cos(detail::kPhase / 2) + detail::kOfTransfer;
   Index i = 0, j = 0;
   b.worst = b.pairs.maxCoeff(&i, &j);
   b.output = exact.outputs()[static_cast<std::size_t>(i)];

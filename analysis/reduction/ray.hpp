@@ -9,6 +9,11 @@
 /// Sampling on the ray of a scene. For the library's own files only.
 namespace titop::detail {
 
+/// Of the size that a pair of an input and an output has without symmetry: a smaller pair is 0.
+inline constexpr double kNearlyZero = 1e-6;
+/// Accuracy of the transfers that errors are measured against: kEnough of compiler/solve.
+inline constexpr double kOfTransfer = 1e-12;
+
 /// Ends of the band [rad/s] of the scene. A model with motions without stiffness cannot be
 /// evaluated at 0: samples below `start` are taken at `start`, 1e-6 of the lowest frequency above
 /// 0, where errors equal those at 0 to six digits (both models contain these motions).
