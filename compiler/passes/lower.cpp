@@ -109,8 +109,8 @@ Stage lower(Stage stage) {
   stage.graph = std::move(g);
   stage.notes.push_back(
       {Note::Kind::info, "lower",
-       fmt::format("{} nodes ({} of them as coefficients), {} equations", stage.graph.nodes.size(),
-                   algebraic, stage.graph.equations.size())});
+       fmt::format("{} blocks, of which {} became coefficients (sums, gains); {} equations",
+                   stage.graph.nodes.size(), algebraic, stage.graph.equations.size())});
   return stage;
 }
 
