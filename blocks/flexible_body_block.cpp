@@ -135,7 +135,7 @@ class FlexibleBodyBlock : public Block,
 
  private:
   /// All that depends on the values.
-  struct Made {
+  struct AtValues {
     std::vector<double> numbers;  ///< of the values
     ModalParameters modes;
     std::shared_ptr<const Shapes> shapes;
@@ -170,8 +170,8 @@ class FlexibleBodyBlock : public Block,
     return [values](const Value& v) { return v.at(values); };
   }
 
-  std::shared_ptr<const Made> made(std::vector<double> numbers, const NumberOf& number) const {
-    Made m{std::move(numbers), {}, shapes_, {}};
+  std::shared_ptr<const AtValues> made(std::vector<double> numbers, const NumberOf& number) const {
+    AtValues m{std::move(numbers), {}, shapes_, {}};
     if (spec_->values.of_shapes()) {
       ModalData data = data_with(*spec_->data, spec_->values, number);
       m.shapes = shapes_of(data);
@@ -183,11 +183,11 @@ class FlexibleBodyBlock : public Block,
                 2 * m.modes.xi.cwiseProduct(m.modes.omega)};
     m.dynamics = spec_->damping.size() > 0 ? coupled_dynamics(std::move(modal), spec_->damping)
                                            : modal_dynamics(std::move(modal));
-    return std::make_shared<const Made>(std::move(m));
+    return std::make_shared<const AtValues>(std::move(m));
   }
 
   /// All nodes of one body share the last result, which is cached.
-  std::shared_ptr<const Made> made_at(ParameterValues values) const {
+  std::shared_ptr<const AtValues> made_at(ParameterValues values) const {
     if (spec_->loss_factor > 0) throw no_state_space(spec_->loss_factor);
     if (spec_->values.empty()) return made_;
     std::vector<double> numbers;
@@ -206,7 +206,7 @@ class FlexibleBodyBlock : public Block,
   std::shared_ptr<const Shapes> shapes_;
   DataDigits digits_;  ///< of the shapes, and of values in place of some
   mutable std::mutex keeping_;
-  mutable std::shared_ptr<const Made> made_;
+  mutable std::shared_ptr<const AtValues> made_;
 };
 
 }  // namespace

@@ -7,11 +7,11 @@
 namespace titop {
 namespace {
 
-using Entries = std::array<Value, 6>;
+using InertiaEntries = std::array<Value, 6>;
 
 /// The symmetric matrix of these entries; number(value) converts a value.
 template <class Number>
-Matrix3d matrix_of(const Entries& entries, Number number) {
+Matrix3d matrix_of(const InertiaEntries& entries, Number number) {
   const auto& [xx, yy, zz, xy, xz, yz] = entries;
   Matrix3d I;
   I << number(xx), number(xy), number(xz), number(xy), number(yy), number(yz), number(xz),
@@ -28,11 +28,11 @@ void Inertia::check_size(Eigen::Index rows, Eigen::Index cols) {
 }
 
 Inertia::Inertia(Value xx, Value yy, Value zz, Value xy, Value xz, Value yz) {
-  const Entries entries{xx, yy, zz, xy, xz, yz};
+  const InertiaEntries entries{xx, yy, zz, xy, xz, yz};
   matrix_ = matrix_of(entries, [](const Value& v) { return v.nominal(); });
   const auto is_parameter = [](const Value& v) { return v.is_parameter(); };
   if (std::any_of(entries.begin(), entries.end(), is_parameter))
-    entries_ = std::make_shared<const Entries>(entries);
+    entries_ = std::make_shared<const InertiaEntries>(entries);
 }
 
 Matrix3d Inertia::at(ParameterValues values) const {

@@ -32,9 +32,9 @@ std::vector<Lever> levers(const Position& position) {
 }
 
 /// The pairs, in an order in which each follows those that act on its z.
-class Pairs {
+class RigidBodyPairs {
  public:
-  Pairs(const RigidBody& spec, ParameterValues values)
+  RigidBodyPairs(const RigidBody& spec, ParameterValues values)
       : spec_(spec),
         tau_AP_(tau(-spec.PA.at(values))),
         mass_(spec.mass.at(values)),
@@ -112,7 +112,7 @@ class Pairs {
 
 Opened opened_rigid_body(const RigidBody& spec, const Dynamics& dynamics, ParameterValues values,
                          std::span<const int> parameters) {
-  return with_pairs(dynamics, Pairs(spec, values).list, parameters);
+  return with_pairs(dynamics, RigidBodyPairs(spec, values).list, parameters);
 }
 
 }  // namespace titop

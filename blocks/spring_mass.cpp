@@ -83,17 +83,17 @@ class SpringMassBlock : public Block, public Specified<SpringMass> {
   /// m: z = xdd_C; k: z = stretch; c: z = its rate; m0: z = xdd_P.
   std::optional<Opened> opened(ParameterValues values,
                                std::span<const int> parameters) const override {
-    using Row = Eigen::RowVectorXd;
+    using RowVector = Eigen::RowVectorXd;
     const double inverse = 1 / spec_.mass.at(values);
     const Eigen::VectorXd back = Eigen::Vector2d(0, -inverse);  // on the mass
     const Eigen::VectorXd mass = Eigen::Vector3d(-inverse, 0, 0),
                           spring = Eigen::Vector3d(-inverse, 1, 0),
                           foot = Eigen::Vector3d(0, -1, 0);
     return with_pairs(*dynamics(values),
-                      {{spec_.mass, back, mass, {}, {}, Row::Unit(3, 0)},
-                       {spec_.stiffness, back, spring, Row::Unit(2, 0), {}},
-                       {spec_.damping, back, spring, Row::Unit(2, 1), {}},
-                       {spec_.parent_mass, {}, foot, {}, Row::Unit(2, 1)}},
+                      {{spec_.mass, back, mass, {}, {}, RowVector::Unit(3, 0)},
+                       {spec_.stiffness, back, spring, RowVector::Unit(2, 0), {}},
+                       {spec_.damping, back, spring, RowVector::Unit(2, 1), {}},
+                       {spec_.parent_mass, {}, foot, {}, RowVector::Unit(2, 1)}},
                       parameters);
   }
 

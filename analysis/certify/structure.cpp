@@ -13,7 +13,7 @@ namespace titop::certification {
 namespace {
 
 using Eigen::VectorXd;
-using Vectors = std::vector<VectorXd>;  ///< one per channel
+using ChannelVectors = std::vector<VectorXd>;  ///< one per channel
 
 constexpr double kNoWork = 1e-12;  ///< of the sum of magnitudes: rounding of rotations
 
@@ -44,7 +44,7 @@ class Connections {
  public:
   Connections(const Graph& g, ParameterValues values)
       : g_(g), values_(values), drive_(g), accel_(zeros()), force_(zeros()) {
-    Vectors any = zeros();
+    ChannelVectors any = zeros();
     randomize(0, size(), any);
     settle([&](std::size_t c) {
       const Drive& d = drive_[c];
@@ -57,7 +57,7 @@ class Connections {
   /// Total work of the wrenches under the motions imposed on channels [first, end), over the sum of
   /// magnitudes; motions are random.
   double work(std::size_t first, std::size_t end) {
-    Vectors any = zeros();
+    ChannelVectors any = zeros();
     randomize(first, end, any);
     force_ = reaction_ = zeros();
     settle([&](std::size_t c) {
@@ -78,13 +78,13 @@ class Connections {
   }
 
  private:
-  Vectors zeros() const {
-    Vectors list;
+  ChannelVectors zeros() const {
+    ChannelVectors list;
     for (const Channel& c : g_.channels) list.push_back(VectorXd::Zero(c.size));
     return list;
   }
 
-  static void randomize(std::size_t first, std::size_t end, Vectors& list) {
+  static void randomize(std::size_t first, std::size_t end, ChannelVectors& list) {
     detail::SteadyRandom random;
     for (std::size_t c = first; c < end; ++c)
       for (double& x : list[c]) x = random.unit();
@@ -130,7 +130,7 @@ class Connections {
   const Graph& g_;
   ParameterValues values_;
   Drives drive_;
-  Vectors accel_, force_, reaction_;
+  ChannelVectors accel_, force_, reaction_;
 };
 
 /// The first channel whose motion is imposed and whose wrench is not returned, by bisection: work

@@ -44,15 +44,15 @@ Graph without_ports(const Graph& from, std::vector<RigidMotion>& motions) {
 }
 
 /// The signals of a cut: u is fed into the diagram after the cut, r returns to it.
-struct Cut {
+struct CutSignals {
   int r = -1, u = -1;  ///< the loop point's input and output
   int d = -1;          ///< the new external input
 };
 
 /// Adds an input and an output of the loop point's name: the sum that returns, or u. Returns the
 /// cut; in the closed loop u is r, or r + d.
-Cut add_ports(Graph& g, int node, Wanted wanted) {
-  Cut c{port_of(g, node, Signal::Role::input), port_of(g, node, Signal::Role::output), -1};
+CutSignals add_ports(Graph& g, int node, Wanted wanted) {
+  CutSignals c{port_of(g, node, Signal::Role::input), port_of(g, node, Signal::Role::output), -1};
   const Node n = g.nodes[at(node)];
   const int size = g.signals[at(c.r)].size;
   c.d = add_input(g, n.name, size, n.where);
@@ -75,7 +75,7 @@ void replace(std::vector<Term>& terms, int signal, int by) {
 }
 
 /// L: everything that reads u reads the input instead. S, T: the input is added to r.
-void apply(Graph& g, const Cut& c, Wanted wanted) {
+void apply(Graph& g, const CutSignals& c, Wanted wanted) {
   for (Equation& e : g.equations) {
     if (wanted == Wanted::L) replace(e.terms, c.u, c.d);
     if (wanted != Wanted::L && e.target == c.r) e.terms.push_back({.signal = c.d});
@@ -91,9 +91,9 @@ System compiled(const System& system, const std::vector<int>& nodes, Wanted want
     begin.motions = stage.motions;
     begin.before = stage.dependents;
     Graph g = without_ports(stage.written(), begin.motions);
-    std::vector<Cut> cuts;
+    std::vector<CutSignals> cuts;
     for (const int node : nodes) cuts.push_back(add_ports(g, node, wanted));
-    for (const Cut& c : cuts) apply(g, c, wanted);
+    for (const CutSignals& c : cuts) apply(g, c, wanted);
     begin.source = std::make_shared<const Graph>(std::move(g));
     return begin;
   }));

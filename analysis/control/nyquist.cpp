@@ -20,14 +20,14 @@ constexpr int kHalvings = 40;
 constexpr int kSplits = 1000;  ///< of one piece
 
 /// A piece of the path: s of t from 0 to 1.
-using Path = std::function<Complex(double)>;
+using Curve = std::function<Complex(double)>;
 
 class Winding {
  public:
   explicit Winding(const LoopResponse& response) : response_(response) {}
 
   /// The turn of det(1 + L) along the path [rad].
-  double along(const Path& path) const {
+  double along(const Curve& path) const {
     splits_ = kSplits;
     return turn(path, 0, at(path(0)), 1, at(path(1)), kHalvings);
   }
@@ -39,7 +39,7 @@ class Winding {
   }
 
  private:
-  double turn(const Path& path, double t0, Complex f0, double t1, Complex f1, int left) const {
+  double turn(const Curve& path, double t0, Complex f0, double t1, Complex f1, int left) const {
     const double t = (t0 + t1) / 2;
     const Complex f = at(path(t));
     const double first = std::arg(f / f0), second = std::arg(f1 / f);

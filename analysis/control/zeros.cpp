@@ -11,10 +11,10 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-struct Matrices {
+struct SystemMatrix {
   MatrixXd A, B, C, D;
 
-  Matrices dual() const { return {A.transpose(), C.transpose(), B.transpose(), D.transpose()}; }
+  SystemMatrix dual() const { return {A.transpose(), C.transpose(), B.transpose(), D.transpose()}; }
 };
 
 MatrixXd stacked(const MatrixXd& upper, const MatrixXd& lower) {
@@ -29,7 +29,7 @@ Index rank_of(const Eigen::JacobiSVD<MatrixXd>& svd, double zero) {
 
 /// The same zeros with a direct term of full row rank. Outputs C2 x without direct term are 0 along
 /// a zero: the states that they see are 0 there, and their derivatives are outputs in their place.
-Matrices with_full_rows(Matrices m, double zero) {
+SystemMatrix with_full_rows(SystemMatrix m, double zero) {
   while (m.C.rows() > 0) {
     Index direct = 0;
     if (m.D.size() > 0) {
@@ -59,7 +59,7 @@ Matrices with_full_rows(Matrices m, double zero) {
 }
 
 /// In units of inputs and outputs in which B and C are as large as A.
-double common_scale(Matrices& m) {
+double common_scale(SystemMatrix& m) {
   const double a = m.A.norm(), b = m.B.norm(), c = m.C.norm();
   const double size = a > 0 ? a : 1;
   const double to_b = b > 0 ? size / b : 1, to_c = c > 0 ? size / c : 1;
@@ -73,7 +73,7 @@ Eigen::VectorXcd transmission_zeros(const StateSpace& model) {
   require_fitting(model, "transmission_zeros");
   detail::require_finite(model, "zeros");
   const StateSpace s = detail::scaled(model);
-  Matrices m{s.A, s.B, s.C, s.D};
+  SystemMatrix m{s.A, s.B, s.C, s.D};
   const double size = common_scale(m);
   const double zero =
       static_cast<double>(m.A.rows() + m.B.cols() + m.C.rows()) * linalg::kEpsilon * size;

@@ -12,7 +12,7 @@ using exact::ExactMatrix;
 using exact::Residue;
 using linalg::at;
 
-using Places = std::vector<Index>;
+using Indices = std::vector<Index>;
 
 /// Random numbers, the same in every run.
 class Random {
@@ -32,7 +32,7 @@ class Random {
   std::mt19937_64 bits_{1};
 };
 
-ExactMatrix part(const ExactMatrix& m, const Places& rows, const Places& cols) {
+ExactMatrix part(const ExactMatrix& m, const Indices& rows, const Indices& cols) {
   ExactMatrix p(static_cast<Index>(rows.size()), static_cast<Index>(cols.size()));
   for (Index i = 0; i < p.rows; ++i)
     for (Index j = 0; j < p.cols; ++j) p(i, j) = m(rows[at(i)], cols[at(j)]);
@@ -53,8 +53,9 @@ ExactMatrix scaled_columns(ExactMatrix m, const std::vector<Residue>& factors) {
 
 /// The matrix from [kept columns] to [kept rows] with the columns `in` fed by the rows `out` times
 /// these factors.
-ExactMatrix fed_back(const ExactMatrix& m, const Places& out, const Places& in,
-                     const std::vector<Residue>& factors, const Places& rows, const Places& cols) {
+ExactMatrix fed_back(const ExactMatrix& m, const Indices& out, const Indices& in,
+                     const std::vector<Residue>& factors, const Indices& rows,
+                     const Indices& cols) {
   ExactMatrix E = Residue(-1) * scaled_columns(part(m, out, in), factors);
   for (Index i = 0; i < E.rows; ++i) E(i, i) += 1;
   const ExactMatrix z = solved(E, part(m, out, cols));
@@ -68,7 +69,7 @@ int degree(F f, int points, Index ny, Index nu, Random& random) {
   const ExactMatrix R = random.matrix(nu, k), L = random.matrix(k, ny);
   std::vector<Residue> x(at(k)), y(at(k));
   ExactMatrix W(ny, k), V(k, nu);  // f(x_b) R_b, L_a f(y_a)
-  Places all_y(at(ny)), all_u(at(nu));
+  Indices all_y(at(ny)), all_u(at(nu));
   for (Index i = 0; i < k; ++i) {
     x[at(i)] = random(), y[at(i)] = random();
     const ExactMatrix at_x = f(x[at(i)]), at_y = f(y[at(i)]);
@@ -90,7 +91,7 @@ int degree(F f, int points, Index ny, Index nu, Random& random) {
 struct OpenedModel {
   exact::Model model;
   std::vector<int> parameter;  ///< of each pair
-  Places w, z, u, y;
+  Indices w, z, u, y;
 
   OpenedModel(const Graph& g, ParameterValues values)
       : model(exact::model_of(g, {.rotations = ExactRotations::nearest}, values)) {
@@ -129,7 +130,7 @@ struct OpenedModel {
 /// The degree in parameter p, at most `most` + 2.
 int degree_in(const OpenedModel& o, const ExactMatrix& M, int p, int most, Random& random) {
   const std::vector<Residue> deviations = o.deviations(random);
-  Places in, out, rows, cols;  // pairs of other parameters; then those of p and the signals
+  Indices in, out, rows, cols;  // pairs of other parameters; then those of p and the signals
   std::vector<Residue> others;
   Index own = 0;
   for (std::size_t k = 0; k < o.parameter.size(); ++k) {
@@ -141,7 +142,7 @@ int degree_in(const OpenedModel& o, const ExactMatrix& M, int p, int most, Rando
   cols.insert(cols.end(), o.u.begin(), o.u.end());
   rows.insert(rows.end(), o.y.begin(), o.y.end());
   const ExactMatrix N = fed_back(M, out, in, others, rows, cols);
-  Places first, ys, us;
+  Indices first, ys, us;
   for (Index k = 0; k < own; ++k) first.push_back(k);
   for (Index k = own; k < N.rows; ++k) ys.push_back(k);
   for (Index k = own; k < N.cols; ++k) us.push_back(k);

@@ -23,11 +23,11 @@ struct BlockModes {
   Eigen::MatrixXd b;                    ///< modes x inputs
   Eigen::MatrixXd out_q, out_v, out_a;  ///< outputs x modes
   /// A column that is to be in the span of static vectors, with its input and its output; -1: none.
-  struct Port {
+  struct PortColumn {
     Eigen::VectorXd column;
     Eigen::Index input = -1, output = -1;
   };
-  std::vector<Port> ports;
+  std::vector<PortColumn> ports;
 };
 
 /// None if the block has no modes, or its kinematic part has stiffnesses of its own.

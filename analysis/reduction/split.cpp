@@ -143,18 +143,18 @@ class Core {
 };
 
 /// Both ends in the core's coordinates, without the coupling between core and ends.
-struct Ends {
+struct DecoupledEnds {
   MatrixXd from_core;  ///< sinks x core: a sink is z + from_core * core
   MatrixXd to_core;    ///< core x sources: the core is z + to_core * sources
 };
 
-Ends decouple(const StateSpace& m, const PeeledStates& p, const Core& core) {
+DecoupledEnds decouple(const StateSpace& m, const PeeledStates& p, const Core& core) {
   const MatrixXcd &T = core.schur().T, &Q = core.schur().Q;
   const MatrixXd A_pc = m.A(p.sinks, p.core) * core.scale().asDiagonal(),
                  A_cr = core.scale().cwiseInverse().asDiagonal() * m.A(p.core, p.sources);
   const MatrixXcd N_p = m.A(p.sinks, p.sinks).cast<Complex>(),
                   N_r = m.A(p.sources, p.sources).cast<Complex>();
-  Ends e;
+  DecoupledEnds e;
   e.from_core = (linalg::sylvester(N_p, T, -(A_pc.cast<Complex>() * Q)) * Q.adjoint()).real();
   e.to_core = (Q * linalg::sylvester(T, N_r, -(Q.adjoint() * A_cr.cast<Complex>()))).real();
   return e;
@@ -184,8 +184,8 @@ SpectralPart without_idle(SpectralPart p) {
           p.right(Eigen::all, stay)};
 }
 
-SpectralPart integrals(const StateSpace& m, const PeeledStates& p, const Core& core, const Ends& e,
-                       const MatrixXd& B_core, const MatrixXd& C_core) {
+SpectralPart integrals(const StateSpace& m, const PeeledStates& p, const Core& core,
+                       const DecoupledEnds& e, const MatrixXd& B_core, const MatrixXd& C_core) {
   const auto sinks = static_cast<Index>(p.sinks.size()),
              sources = static_cast<Index>(p.sources.size()), n = sinks + sources;
   const MatrixXd A_cr = core.scale().cwiseInverse().asDiagonal() * m.A(p.core, p.sources);
@@ -209,7 +209,7 @@ SpectralPart integrals(const StateSpace& m, const PeeledStates& p, const Core& c
 }
 
 Split assemble(const StateSpace& m, const PeeledStates& p, const Core& core) {
-  const Ends e = decouple(m, p, core);
+  const DecoupledEnds e = decouple(m, p, core);
   const Index n = m.A.rows(), rest = core.order() - core.kept;
   const MatrixXd B_own = core.scale().cwiseInverse().asDiagonal() * m.B(p.core, Eigen::all);
   const MatrixXd C_core = MatrixXd(m.C(Eigen::all, p.core) * core.scale().asDiagonal()) +

@@ -103,7 +103,7 @@ double radius_around(Complex s, const std::vector<Pole>& poles) {
 }
 
 /// Residue of the transfer to all points: translations and rotations of each, 6 rows, by inputs.
-struct Residue {
+struct PoleResidue {
   MatrixXcd motion;
   double radius = 0;  ///< of the circle
   double around = 0;  ///< largest entry of (s - pole) T(s) on the circle
@@ -121,10 +121,10 @@ class PointMotions {
   const Graph& graph() const { return system_.stage().graph; }
   ParameterValues values() const { return system_.stage().values; }
 
-  Residue residue(Complex pole) const {
+  PoleResidue residue(Complex pole) const {
     const double radius = radius_around(pole, poles_);
     const auto inputs = static_cast<Index>(system_.inputs().size());
-    Residue sum{MatrixXcd::Zero(6 * std::ssize(rows_), inputs), radius};
+    PoleResidue sum{MatrixXcd::Zero(6 * std::ssize(rows_), inputs), radius};
     for (int k = 0; k < kOnCircle; ++k) {
       const Complex step = std::polar(radius, (2 * k + 1) * std::numbers::pi / kOnCircle);
       const MatrixXcd term = step * motions(pole + step);
@@ -189,7 +189,7 @@ void add_shape(const PointMotions& points, const std::vector<Pole>& poles, int p
   if (pole.omega == 0)
     return without.push_back(
         without_shape(pole, "its motion is rigid", "take a pole of an elastic mode"));
-  const Residue residue = points.residue(pole.s);
+  const PoleResidue residue = points.residue(pole.s);
   Index before = 0;  // equal poles that come first in the list
   for (int i = 0; i < place; ++i) before += std::abs(poles[at(i)].s - pole.s) < residue.radius;
   const Eigen::JacobiSVD<MatrixXcd> svd(residue.motion, Eigen::ComputeThinU);

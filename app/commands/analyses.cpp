@@ -38,7 +38,7 @@ Eigen::Index place_of_input(const System& system, const std::string& name,
 
 /// A table of "time" and inputs, those that are left out at 0.
 Excitation recorded_inputs(const System& system, const std::string& file) {
-  const Table table = read_table(file);
+  const CsvTable table = read_table(file);
   if (table.names.front() != "time" && table.names.front() != "time [s]")
     throw Error(Code::bad_file,
                 fmt::format("{}: the first column is {}", file, table.names.front()),
@@ -75,14 +75,14 @@ std::pair<std::size_t, std::size_t> part_of(const Arguments& a, std::size_t rows
   return {rows * (part - 1) / parts, rows * part / parts};
 }
 
-ParameterList point_of(const Table& table, const std::vector<double>& row) {
+ParameterList point_of(const CsvTable& table, const std::vector<double>& row) {
   ParameterList point;
   for (std::size_t c = 0; c < table.names.size(); ++c) point.emplace_back(table.names[c], row[c]);
   return point;
 }
 
 /// Every column must be a parameter.
-void require_parameters(const System& system, const Table& table) {
+void require_parameters(const System& system, const CsvTable& table) {
   std::vector<std::string> names;
   for (const auto& parameter : system.parameters()) names.push_back(parameter.first);
   for (const std::string& column : table.names)
@@ -142,7 +142,8 @@ struct SweptRows {
 };
 
 /// Each row for itself: one that is refused leaves the others.
-SweptRows swept(const System& system, const Table& table, const Arguments& a, const Ranks& ranks) {
+SweptRows swept(const System& system, const CsvTable& table, const Arguments& a,
+                const Ranks& ranks) {
   const auto [from, to] = part_of(a, table.rows.size());
   const auto [begin, end] = ranks.part(from, to);
   std::vector<std::string> lines(end - begin), faults(end - begin);
@@ -166,7 +167,7 @@ SweptRows swept(const System& system, const Table& table, const Arguments& a, co
 int sweep_of(const Arguments& a, const Ranks& ranks) {
   require_csv(a.words[2]);
   require_csv(a.words[3]);
-  const Table table = read_table(a.words[2]);
+  const CsvTable table = read_table(a.words[2]);
   const System system = compiled(a);
   require_parameters(system, table);
   const std::string names = emit::csv_line(columns_of(system, a, table.names)) + "\n";

@@ -26,7 +26,7 @@ class TableReader {
       mistakes_.add(fe::bad_line(file_, 0, "no row of numbers", "names, then rows of numbers"));
     mistakes_.finish();
   }
-  Table table;
+  CsvTable table;
 
  private:
   void read_names(int line, const std::vector<std::string>& fields) {
@@ -58,9 +58,11 @@ class TableReader {
 
 }  // namespace
 
-std::string Table::place(std::size_t row) const { return fmt::format("{}:{}", file, lines[row]); }
+std::string CsvTable::place(std::size_t row) const {
+  return fmt::format("{}:{}", file, lines[row]);
+}
 
-Table read_table(const std::filesystem::path& file) {
+CsvTable read_table(const std::filesystem::path& file) {
   fe::TextFile text = fe::read_text(file);
   if (text.content.starts_with("\xEF\xBB\xBF")) text.content.erase(0, 3);
   return TableReader(text).table;

@@ -8,7 +8,7 @@
 namespace titop::command_line {
 
 /// A line of names and a line of numbers for each row.
-struct Table {
+struct CsvTable {
   std::string file;                       ///< its name, for messages
   std::vector<std::string> names;         ///< of the columns, none twice
   std::vector<std::vector<double>> rows;  ///< each with a number for every name
@@ -19,6 +19,6 @@ struct Table {
 
 /// A CSV file (RFC 4180, with or without a byte-order mark); lines that are empty or begin with #
 /// are left out. Throws bad_file with every line that does not fit, and for a file without rows.
-Table read_table(const std::filesystem::path& file);
+CsvTable read_table(const std::filesystem::path& file);
 
 }  // namespace titop::command_line

@@ -48,13 +48,13 @@ class ManualAssembly {
     first_.push_back(columns.count);
     const auto take = [&](std::vector<std::size_t>& kind) { kind.push_back(columns.count++); };
     const bool scalar = b.spring.has_value();
-    if (b.base.kind != Base::Kind::mounted)
+    if (b.base.kind != Attachment::Kind::mounted)
       for (int i = 0; i < (scalar ? 1 : 6); ++i) {
-        const bool held = b.base.kind == Base::Kind::ground ||
-                          (b.base.kind == Base::Kind::pinned && (scalar || i < 3));
-        take(held                                 ? columns.held
-             : b.base.kind == Base::Kind::imposed ? columns.imposed
-                                                  : columns.free);
+        const bool held = b.base.kind == Attachment::Kind::ground ||
+                          (b.base.kind == Attachment::Kind::pinned && (scalar || i < 3));
+        take(held                                       ? columns.held
+             : b.base.kind == Attachment::Kind::imposed ? columns.imposed
+                                                        : columns.free);
       }
     own_.push_back(columns.count);
     const std::size_t own = b.body ? b.body->omega.size() : 1;
@@ -67,7 +67,7 @@ class ManualAssembly {
   Table<S> base_motion(std::size_t i) {
     const PlannedBlock& b = plan_.blocks[i];
     const auto size = static_cast<std::size_t>(b.size());
-    if (b.base.kind == Base::Kind::mounted) {
+    if (b.base.kind == Attachment::Kind::mounted) {
       const Table<S>& site = motion(b.base.on);
       if (b.base.along) return row<S>(*b.base.along) * site.rows({0, 1, 2});
       return b.spring ? site : dual<S>(transposed(b.base.T)) * site;
@@ -82,7 +82,7 @@ class ManualAssembly {
     const PlannedBlock& b = plan_.blocks[i];
     const Table<S> P = base_motion(i);
     motions_[{block, "parent"}] = P;
-    if (!b.base.input.empty() && b.base.kind != Base::Kind::imposed)
+    if (!b.base.input.empty() && b.base.kind != Attachment::Kind::imposed)
       load(P.rows(free_rows(b)), input(b.base.input));
     if (b.spring) add_spring(block, *b.spring, P);
     if (b.joint) add_joint(block, *b.joint, P);
@@ -92,7 +92,7 @@ class ManualAssembly {
   /// The directions of a base in which its input acts.
   static std::vector<std::size_t> free_rows(const PlannedBlock& b) {
     if (b.spring) return {0};
-    if (b.base.kind == Base::Kind::pinned) return {3, 4, 5};
+    if (b.base.kind == Attachment::Kind::pinned) return {3, 4, 5};
     return {0, 1, 2, 3, 4, 5};
   }
 
@@ -221,7 +221,7 @@ class ManualAssembly {
     Table<S> a(columns.imposed.size(), F_.cols());
     std::size_t k = 0;
     for (const PlannedBlock& b : plan_.blocks)
-      if (b.base.kind == Base::Kind::imposed)
+      if (b.base.kind == Attachment::Kind::imposed)
         for (int i = 0; i < b.size(); ++i)
           a(k++, input(b.base.input) + static_cast<std::size_t>(i)) = S(1);
     return a;

@@ -15,9 +15,9 @@ namespace titop::generate {
 namespace {
 
 /// The words one after the other.
-class Words {
+class CommandWords {
  public:
-  explicit Words(const std::vector<std::string>& all) : all_(all) {}
+  explicit CommandWords(const std::vector<std::string>& all) : all_(all) {}
   bool more() const { return at_ < all_.size(); }
   const std::string& next() {
     if (!more()) throw std::invalid_argument(fmt::format("{} needs more", all_.back()));
@@ -48,7 +48,7 @@ class Words {
   std::size_t at_ = 0;
 };
 
-bool option(const std::string& word, Words& words, GenerateOptions& o) {
+bool option(const std::string& word, CommandWords& words, GenerateOptions& o) {
   if (word == "--seed") {
     o.seed = static_cast<std::uint64_t>(words.number(0, 2000000000));
   } else if (word == "--family") {
@@ -90,7 +90,7 @@ void write(const std::filesystem::path& path, const std::string& content) {
 void command(const std::vector<std::string>& all) {
   GenerateOptions options;
   std::vector<std::filesystem::path> files;
-  for (Words words(all); words.more();) {
+  for (CommandWords words(all); words.more();) {
     const std::string& word = words.next();
     if (option(word, words, options)) continue;
     if (word.starts_with("--"))

@@ -78,12 +78,13 @@ class Artist {
   bool damped() {
     return o_.damping == Damping::all || (o_.damping == Damping::some && dice_.chance(50));
   }
-  Base::Kind base_kind() {
-    static constexpr Base::Kind kKinds[] = {Base::Kind::ground, Base::Kind::free,
-                                            Base::Kind::imposed, Base::Kind::pinned};
+  Attachment::Kind base_kind() {
+    static constexpr Attachment::Kind kKinds[] = {Attachment::Kind::ground, Attachment::Kind::free,
+                                                  Attachment::Kind::imposed,
+                                                  Attachment::Kind::pinned};
     const int kinds = o_.family == Family::scalar ? 3 : 4;
-    const Base::Kind kind = kKinds[dice_.below(kinds)];
-    return o_.loops > 0 && kind == Base::Kind::imposed ? Base::Kind::free : kind;
+    const Attachment::Kind kind = kKinds[dice_.below(kinds)];
+    return o_.loops > 0 && kind == Attachment::Kind::imposed ? Attachment::Kind::free : kind;
   }
   /// Stiffness and damping of a spring.
   std::pair<Ratio, Ratio> spring() {
@@ -95,7 +96,8 @@ class Artist {
 
   void scalar() {
     for (int i = 0; i < o_.bodies; ++i) {
-      if (o_.twins && i > 1 && i % 2 == 0 && plan_.blocks.back().base.kind == Base::Kind::mounted) {
+      if (o_.twins && i > 1 && i % 2 == 0 &&
+          plan_.blocks.back().base.kind == Attachment::Kind::mounted) {
         PlannedBlock twin = plan_.blocks.back();
         twin.name = fresh("z");
         twin.stiffness_parameter.clear();
@@ -112,7 +114,7 @@ class Artist {
     read({.of = PlannedReading::Of::acceleration,
           .point = {o_.twins ? 0 : dice_.below(o_.bodies), "child"}},
          1);
-    const bool grounded = plan_.blocks[0].base.kind == Base::Kind::ground;
+    const bool grounded = plan_.blocks[0].base.kind == Attachment::Kind::ground;
     if (grounded && closures_independent(plan_))
       read({.of = PlannedReading::Of::support, .point = {0, "parent"}}, 1);
     if (grounded) read({.of = PlannedReading::Of::position, .point = {0, "child"}}, 1);
@@ -124,15 +126,15 @@ class Artist {
     b.spring = Spring{dice_.octaves(-1, 3), k, c, {}};
     if (dice_.chance(15)) b.stiffness_parameter = "k_" + b.name;
     if (i > 0) {
-      b.base.kind = Base::Kind::mounted;
+      b.base.kind = Attachment::Kind::mounted;
       b.base.on = {parent_of(o_.shape, i, dice_), "child"};
     } else {
       b.base.kind = base_kind();
-      if (b.base.kind == Base::Kind::imposed ||
-          (b.base.kind == Base::Kind::free && dice_.chance(50)))
+      if (b.base.kind == Attachment::Kind::imposed ||
+          (b.base.kind == Attachment::Kind::free && dice_.chance(50)))
         b.base.input = input(1);
     }
-    if (b.base.kind == Base::Kind::free || dice_.chance(30))
+    if (b.base.kind == Attachment::Kind::free || dice_.chance(30))
       b.spring->parent_mass = dice_.octaves(-1, 3);
     return b;
   }
@@ -199,10 +201,10 @@ class Artist {
     for (const int i : bodies_) use_body(i);
     read({.of = PlannedReading::Of::acceleration, .point = {any_body(), "T"}}, 6);
     plan_.loads.push_back({input(3), {any_body(), "T"}, {PlannedPart::Kind::linear, {}}});
-    const Base::Kind root = plan_.blocks[0].base.kind;
-    if (root == Base::Kind::ground && closures_independent(plan_) && dice_.chance(60))
+    const Attachment::Kind root = plan_.blocks[0].base.kind;
+    if (root == Attachment::Kind::ground && closures_independent(plan_) && dice_.chance(60))
       read({.of = PlannedReading::Of::support, .point = {0, "parent"}}, 6);
-    if (root == Base::Kind::ground && dice_.chance(60))
+    if (root == Attachment::Kind::ground && dice_.chance(60))
       read({.of = PlannedReading::Of::position,
             .point = {any_body(), "T"},
             .part = {PlannedPart::Kind::linear, {}}},
@@ -240,7 +242,7 @@ class Artist {
   }
 
   BodyPoint point(const char* name, int modes) {
-    BodyPoint p{name, dice_.vector(), Rows(6)};
+    BodyPoint p{name, dice_.vector(), RatioMatrix(6)};
     for (auto& row : p.Phi)
       for (int j = 0; j < modes; ++j) row.push_back(dice_.fraction());
     return p;
@@ -248,7 +250,7 @@ class Artist {
 
   /// The modes have less than the body's mass: D_P - L'L is positive, with a margin.
   static bool carries(const Body& b) {
-    const Rows mass = rigid_mass(b);
+    const RatioMatrix mass = rigid_mass(b);
     Eigen::Matrix<double, 6, 6> D;
     for (int i = 0; i < 6; ++i)
       for (int j = 0; j < 6; ++j)
@@ -265,12 +267,12 @@ class Artist {
     PlannedBlock b{.name = fresh("b"), .body = random_body()};
     if (i == 0) {
       b.base.kind = base_kind();
-      if (b.base.kind == Base::Kind::imposed ||
-          (b.base.kind != Base::Kind::ground && dice_.chance(50)))
-        b.base.input = input(b.base.kind == Base::Kind::pinned ? 3 : 6);
+      if (b.base.kind == Attachment::Kind::imposed ||
+          (b.base.kind != Attachment::Kind::ground && dice_.chance(50)))
+        b.base.input = input(b.base.kind == Attachment::Kind::pinned ? 3 : 6);
       return add_body(b);
     }
-    b.base.kind = Base::Kind::mounted;
+    b.base.kind = Attachment::Kind::mounted;
     const int on = bodies_[static_cast<std::size_t>(parent_of(o_.shape, i, dice_))];
     b.base.on = {on, "C" + std::to_string(dice_.between(1, 3))};
     b.base.turned = dice_.chance(75);
@@ -299,7 +301,7 @@ class Artist {
     if (kind > 0 && dice_.chance(50))
       read({.of = PlannedReading::Of::relative, .point = {index, ""}}, 1);
     plan_.blocks.push_back(h);
-    b.base = {.kind = Base::Kind::mounted, .on = {index, "child"}, .T = unit3()};
+    b.base = {.kind = Attachment::Kind::mounted, .on = {index, "child"}, .T = unit3()};
   }
 
   /// The same body at the same place as the one before.
@@ -363,7 +365,7 @@ class Artist {
     PlannedBlock z{.name = fresh("z")};
     const auto [k, c] = spring();
     z.spring = Spring{dice_.octaves(-2, 1), k, c, {}};
-    z.base = {.kind = Base::Kind::mounted, .on = {on, "T"}, .along = dice_.direction()};
+    z.base = {.kind = Attachment::Kind::mounted, .on = {on, "T"}, .along = dice_.direction()};
     if (dice_.chance(50))
       read({.of = PlannedReading::Of::relative, .point = {int(plan_.blocks.size()), ""}}, 1);
     plan_.blocks.push_back(z);

@@ -12,8 +12,8 @@
 namespace titop::generate {
 
 using Vec3 = std::array<Ratio, 3>;
-using Mat3 = std::array<Vec3, 3>;              ///< rows
-using Rows = std::vector<std::vector<Ratio>>;  ///< a matrix
+using Mat3 = std::array<Vec3, 3>;                     ///< rows
+using RatioMatrix = std::vector<std::vector<Ratio>>;  ///< a matrix
 
 /// An item with a motion: a spring-mass's ends, a body's points, a joint's ends, by name.
 struct PlannedPoint {
@@ -22,7 +22,7 @@ struct PlannedPoint {
 };
 
 /// Attachment of the parent point of a block.
-struct Base {
+struct Attachment {
   enum class Kind {
     mounted,  ///< on `on`, turned by T (body to site), or along one direction of it
     ground,   ///< held
@@ -45,14 +45,14 @@ struct Spring {
 struct BodyPoint {
   std::string name;
   Vec3 PC = {};
-  Rows Phi = {};  ///< 6 x N
+  RatioMatrix Phi = {};  ///< 6 x N
 };
 struct Body {
   Ratio mass;
   Vec3 inertia = {};  ///< principal, about the centre of mass
   Vec3 PA = {};
   std::vector<Ratio> omega = {}, xi = {};
-  Rows L = {};  ///< N x 6
+  RatioMatrix L = {};  ///< N x 6
   std::vector<BodyPoint> points = {};
 };
 
@@ -66,7 +66,7 @@ struct PlannedJoint {
 
 struct PlannedBlock {
   std::string name;
-  Base base = {};
+  Attachment base = {};
   std::optional<Spring> spring = {};
   std::optional<Body> body = {};
   std::optional<PlannedJoint> joint = {};
@@ -86,7 +86,7 @@ struct Control {
   int block = -1;        ///< position
   PlannedPoint at = {};  ///< acceleration, and a spring-mass's child for position
   std::optional<Vec3> along = {};
-  Rows A = {}, B = {}, C = {};
+  RatioMatrix A = {}, B = {}, C = {};
   Ratio D = {};
 };
 
@@ -172,9 +172,9 @@ inline Mat3 cross(const Vec3& v) {
 }
 
 /// D_P = tau_AP' diag(m, I_A) tau_AP with AP = -PA: [m, m (*AP); m (*AP)', I_A - m (*AP)^2].
-inline Rows rigid_mass(const Body& b) {
+inline RatioMatrix rigid_mass(const Body& b) {
   const Mat3 x = cross(-b.PA), xx = transposed(x) * x;
-  Rows D(6, std::vector<Ratio>(6));
+  RatioMatrix D(6, std::vector<Ratio>(6));
   for (std::size_t i = 0; i < 3; ++i) {
     D[i][i] = b.mass;
     for (std::size_t j = 0; j < 3; ++j) {

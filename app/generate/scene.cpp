@@ -16,7 +16,7 @@ Json list(const std::vector<Ratio>& v) {
   return j;
 }
 Json list(const Vec3& v) { return {number(v[0]), number(v[1]), number(v[2])}; }
-Json rows(const Rows& M) {
+Json rows(const RatioMatrix& M) {
   Json j = Json::array();
   for (const auto& row : M) j.push_back(list(row));
   return j;
@@ -66,7 +66,7 @@ class PlanWriter {
     return t;
   }
   static Json part(const PlannedPart& p) {
-    Rows r;
+    RatioMatrix r;
     if (p.kind == PlannedPart::Kind::linear)
       r = {{1, 0, 0, 0, 0, 0}, {0, 1, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0}};
     else
@@ -75,8 +75,9 @@ class PlanWriter {
             {"rows", rows(r)}};
   }
   static Json angular() {
-    return {{"part", ".angular"},
-            {"rows", rows(Rows{{0, 0, 0, 1, 0, 0}, {0, 0, 0, 0, 1, 0}, {0, 0, 0, 0, 0, 1}})}};
+    return {
+        {"part", ".angular"},
+        {"rows", rows(RatioMatrix{{0, 0, 0, 1, 0, 0}, {0, 0, 0, 0, 1, 0}, {0, 0, 0, 0, 0, 1}})}};
   }
   void equation(Json of, Json terms, const PlannedPart& p = {}, bool add = false) {
     Json e = {{"of", std::move(of)}};
@@ -124,7 +125,7 @@ class PlanWriter {
       j["type"] = "RigidBody";
       j["mass"] = number(body.mass);
       const Vec3& J = body.inertia;
-      j["inertia"] = rows(Rows{{J[0], 0, 0}, {0, J[1], 0}, {0, 0, J[2]}});
+      j["inertia"] = rows(RatioMatrix{{J[0], 0, 0}, {0, J[1], 0}, {0, 0, J[2]}});
       j["PA"] = list(body.PA);
       j["children"] = points;
       return;
@@ -142,14 +143,16 @@ class PlanWriter {
     const PlannedPoint parent{i, "parent"};
     const Json accel = signal(parent, "accel"), force = signal(parent, "force");
     switch (b.base.kind) {
-      case Base::Kind::ground: return equation(accel, Json::array());
-      case Base::Kind::imposed: return equation(accel, Json::array({term({b.base.input})}));
-      case Base::Kind::pinned:
+      case Attachment::Kind::ground: return equation(accel, Json::array());
+      case Attachment::Kind::imposed: return equation(accel, Json::array({term({b.base.input})}));
+      case Attachment::Kind::pinned:
         equation(accel, Json::array(), {PlannedPart::Kind::linear, {}});
         equations_.push_back({{"of", force}, {"part", angular()}, {"terms", acting(b)}});
         return;
-      case Base::Kind::free: equations_.push_back({{"of", force}, {"terms", acting(b)}}); return;
-      case Base::Kind::mounted: return mount(i);
+      case Attachment::Kind::free:
+        equations_.push_back({{"of", force}, {"terms", acting(b)}});
+        return;
+      case Attachment::Kind::mounted: return mount(i);
     }
   }
   static Json acting(const PlannedBlock& b) {
@@ -158,7 +161,7 @@ class PlanWriter {
   }
 
   void mount(int i) {
-    const Base& base = block(i).base;
+    const Attachment& base = block(i).base;
     const PlannedPoint parent{i, "parent"};
     const Json accel = signal(base.on, "accel"), force = signal(parent, "force");
     if (base.along) {
@@ -193,7 +196,7 @@ class PlanWriter {
                        {"A", rows(c.A)},
                        {"B", rows(c.B)},
                        {"C", rows(c.C)},
-                       {"D", rows(Rows{{c.D}})}});
+                       {"D", rows(RatioMatrix{{c.D}})}});
     const Json out = {c.name, "out"};
     PlannedPart direction;
     if (c.along) direction = {PlannedPart::Kind::along, *c.along};

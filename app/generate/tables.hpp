@@ -7,7 +7,7 @@
 namespace titop::generate {
 
 template <class S>
-Table<S> table(const Rows& rows, std::size_t cols) {
+Table<S> table(const RatioMatrix& rows, std::size_t cols) {
   Table<S> t(rows.size(), cols);
   for (std::size_t i = 0; i < rows.size(); ++i)
     for (std::size_t j = 0; j < cols; ++j) t(i, j) = exactly<S>(rows[i][j]);

@@ -10,9 +10,9 @@ namespace titop::fe::detail {
 
 namespace {
 
-using Words = std::vector<std::string_view>;
+using Tokens = std::vector<std::string_view>;
 
-enum class Table {
+enum class TableKind {
   none,
   eigenvalues,
   vector,
@@ -35,7 +35,7 @@ bool is_number(std::string_view text) {
 
 /// The words from `first` on as numbers, if they are N ones.
 template <std::size_t N>
-std::optional<std::array<double, N>> numbers(const Words& words, std::size_t first,
+std::optional<std::array<double, N>> numbers(const Tokens& words, std::size_t first,
                                              std::size_t behind = 0) {
   std::array<double, N> result{};
   if (words.size() != first + N + behind) return std::nullopt;
@@ -45,17 +45,17 @@ std::optional<std::array<double, N>> numbers(const Words& words, std::size_t fir
 }
 
 /// The table that a line of text is the title of.
-std::optional<Table> title(std::string_view text) {
-  static constexpr std::array<std::pair<std::string_view, Table>, 9> titles = {
-      {{"R E A L   E I G E N V A L U E S", Table::eigenvalues},
-       {"R E A L   E I G E N V E C T O R   N O .", Table::vector},
-       {"F O R C E S   O F   S I N G L E - P O I N T   C O N S T R A I N T", Table::forces},
-       {"MODAL PARTICIPATION FACTORS", Table::factors},
-       {"MODAL EFFECTIVE MASS FRACTION", Table::none},
-       {"MODAL EFFECTIVE MASS", Table::effective},
-       {"A-SET RIGID BODY MASS MATRIX", Table::rigid},
-       {"G R I D   P O I N T   W E I G H T   G E N E R A T O R", Table::weight_head},
-       {"S O R T E D   B U L K   D A T A   E C H O", Table::bulk}}};
+std::optional<TableKind> title(std::string_view text) {
+  static constexpr std::array<std::pair<std::string_view, TableKind>, 9> titles = {
+      {{"R E A L   E I G E N V A L U E S", TableKind::eigenvalues},
+       {"R E A L   E I G E N V E C T O R   N O .", TableKind::vector},
+       {"F O R C E S   O F   S I N G L E - P O I N T   C O N S T R A I N T", TableKind::forces},
+       {"MODAL PARTICIPATION FACTORS", TableKind::factors},
+       {"MODAL EFFECTIVE MASS FRACTION", TableKind::none},
+       {"MODAL EFFECTIVE MASS", TableKind::effective},
+       {"A-SET RIGID BODY MASS MATRIX", TableKind::rigid},
+       {"G R I D   P O I N T   W E I G H T   G E N E R A T O R", TableKind::weight_head},
+       {"S O R T E D   B U L K   D A T A   E C H O", TableKind::bulk}}};
   for (const auto& [name, table] : titles)
     if (contains(text, name)) return table;
   return std::nullopt;
@@ -86,10 +86,10 @@ class F06Reader {
       header_ = 2;  // the user's titles
     } else if (header_ > 0) {
       --header_;
-    } else if (table_ != Table::bulk || !echo(line.text)) {
+    } else if (table_ != TableKind::bulk || !echo(line.text)) {
       // The first column controls the printer.
       const std::string_view text = line.text.substr(std::min<std::size_t>(1, line.text.size()));
-      if (const Words found = words(text); !found.empty()) text_or_row({line.number, text}, found);
+      if (const Tokens found = words(text); !found.empty()) text_or_row({line.number, text}, found);
     }
   }
 
@@ -102,7 +102,7 @@ class F06Reader {
     return true;
   }
 
-  void text_or_row(const TextLine& line, const Words& found) {
+  void text_or_row(const TextLine& line, const Tokens& found) {
     const std::string_view text = line.text;
     if (const auto next = title(text)) {
       begin(line, *next, found);
@@ -111,45 +111,45 @@ class F06Reader {
     } else if (contains(text, "REFERENCE POINT")) {
       reference(line, found);
     } else if (contains(text, "BEFORE AUGMENTATION")) {
-      table_ = Table::none;
+      table_ = TableKind::none;
     } else if (found[0] == "EIGENVALUE" && found.size() == 3) {
       if (!parse_fortran(found[2], eigenvalue_)) mistake(line, "a number");
-    } else if (table_ == Table::weight_head && trim(text) == "M O") {
-      table_ = Table::weight;
+    } else if (table_ == TableKind::weight_head && trim(text) == "M O") {
+      table_ = TableKind::weight;
     } else if (found[0] == "*" || is_number(found[0])) {
       row(line, found);
     } else if (!is_head(found[0])) {
-      table_ = Table::none;
+      table_ = TableKind::none;
     }
   }
 
-  void begin(const TextLine& line, Table table, const Words& found) {
+  void begin(const TextLine& line, TableKind table, const Tokens& found) {
     table_ = table;
     rows_ = 0;
-    if (table == Table::vector && !parse(found.back(), mode_))
+    if (table == TableKind::vector && !parse(found.back(), mode_))
       mistake(line, "the number of a mode at its end");
     const bool next = tables.forces.empty() || tables.forces.back().eigenvalue != eigenvalue_;
-    if (table == Table::forces && next) tables.forces.push_back({eigenvalue_});
+    if (table == TableKind::forces && next) tables.forces.push_back({eigenvalue_});
   }
 
   /// "REFERENCE POINT AT ORIGIN OF BASIC COORDINATE SYSTEM", "... AT GRID 12", and for weights
   /// "REFERENCE POINT =        0".
-  void reference(const TextLine& line, const Words& found) {
+  void reference(const TextLine& line, const Tokens& found) {
     int grid = 0;
     if (!contains(line.text, "ORIGIN") && (!parse(found.back(), grid) || grid < 0))
       mistake(line, "a grid's number, or the origin");
-    (table_ == Table::weight_head ? weight_about_ : tables.about) = grid;
+    (table_ == TableKind::weight_head ? weight_about_ : tables.about) = grid;
   }
 
-  void row(const TextLine& line, const Words& found) {
+  void row(const TextLine& line, const Tokens& found) {
     switch (table_) {
-      case Table::eigenvalues: return eigenvalue(line, found);
-      case Table::vector: return grid(line, found, tables.vectors[mode_]);
-      case Table::forces: return force(line, found);
-      case Table::factors: return by_mode(line, found, tables.factors);
-      case Table::effective: return by_mode(line, found, tables.effective);
-      case Table::rigid: return matrix(line, found, tables.rigid, tables.about);
-      case Table::weight: return matrix(line, found, tables.weight, weight_about_);
+      case TableKind::eigenvalues: return eigenvalue(line, found);
+      case TableKind::vector: return grid(line, found, tables.vectors[mode_]);
+      case TableKind::forces: return force(line, found);
+      case TableKind::factors: return by_mode(line, found, tables.factors);
+      case TableKind::effective: return by_mode(line, found, tables.effective);
+      case TableKind::rigid: return matrix(line, found, tables.rigid, tables.about);
+      case TableKind::weight: return matrix(line, found, tables.weight, weight_about_);
       default: return;
     }
   }
@@ -159,7 +159,7 @@ class F06Reader {
   }
 
   /// Mode, order, eigenvalue, radians, cycles, generalised mass and stiffness.
-  void eigenvalue(const TextLine& line, const Words& found) {
+  void eigenvalue(const TextLine& line, const Tokens& found) {
     int mode = 0;
     const auto values = numbers<5>(found, 2);
     if (!parse(found[0], mode) || !values) return mistake(line, "the seven numbers of a mode");
@@ -168,7 +168,7 @@ class F06Reader {
   }
 
   /// Scalar points have other types.
-  void grid(const TextLine& line, const Words& found, ByNumber& values) {
+  void grid(const TextLine& line, const Tokens& found, ByNumber& values) {
     int id = 0;
     if (found.size() < 3 || found[1].size() != 1 || !parse(found[0], id) || id < 1)
       return mistake(line, "a point, its type and its components");
@@ -179,7 +179,7 @@ class F06Reader {
   }
 
   /// Two modes may have the same printed eigenvalue.
-  void force(const TextLine& line, const Words& found) {
+  void force(const TextLine& line, const Tokens& found) {
     int id = 0;
     if (parse(found[0], id) && tables.forces.back().values.contains(id))
       tables.forces.push_back({eigenvalue_});
@@ -187,7 +187,7 @@ class F06Reader {
   }
 
   /// Mode, frequency, and a number for each direction.
-  void by_mode(const TextLine& line, const Words& found, ByNumber& values) {
+  void by_mode(const TextLine& line, const Tokens& found, ByNumber& values) {
     int mode = 0;
     const auto value = numbers<6>(found, 2);
     if (!parse(found[0], mode) || !value)
@@ -195,18 +195,18 @@ class F06Reader {
     once(line, values.insert({mode, Vector6::Map(value->data())}).second);
   }
 
-  void matrix(const TextLine& line, const Words& found, std::optional<F06Mass>& mass, int about) {
+  void matrix(const TextLine& line, const Tokens& found, std::optional<F06Mass>& mass, int about) {
     const auto value = numbers<6>(found, 1, 1);
     if (!value || (mass && rows_ == 0))
       return mistake(line, "six numbers of a rigid mass matrix, which is there once");
     if (!mass) mass = F06Mass{.about = about};
     mass->value.row(rows_) = Vector6::Map(value->data()).transpose();
-    if (++rows_ == 6) table_ = Table::none;
+    if (++rows_ == 6) table_ = TableKind::none;
   }
 
   const TextFile& file_;
   FileMistakes& mistakes_;
-  Table table_ = Table::none;
+  TableKind table_ = TableKind::none;
   int header_ = 0, rows_ = 0, mode_ = 0, weight_about_ = 0;
   double eigenvalue_ = 0;
 };

@@ -33,10 +33,10 @@ constexpr long long kGrid = 4501, kFirstByPoints = 2001;
   throw Error(Code::bad_file, fmt::format("{}: {}", file.name, found), hint);
 }
 
-/// Entries of a record, word by word. Double reals take two words of 4 bytes, or one of 8.
-class Entries {
+/// Reads a record word by word. Double reals take two words of 4 bytes, or one of 8.
+class RecordReader {
  public:
-  Entries(const Op2File& file, const std::string& bytes) : file_(file), bytes_(bytes) {}
+  RecordReader(const Op2File& file, const std::string& bytes) : file_(file), bytes_(bytes) {}
 
   bool at_end() const { return at_ + file_.layout.word > bytes_.size(); }
   long long integer() { return file_.layout.integer(take(file_.layout.word)); }
@@ -88,7 +88,7 @@ struct Geometry {
   detail::CoordinateSystems systems;
 
   void read(const Op2File& file, const std::string& record) {
-    Entries entries(file, record);
+    RecordReader entries(file, record);
     const std::size_t words = record.size() / file.layout.word;
     if (words < 3) return;
     Key key{};
@@ -105,7 +105,7 @@ struct Geometry {
   }
 
  private:
-  void read_grid(const Op2File& file, Entries& entries, bool wide) {
+  void read_grid(const Op2File& file, RecordReader& entries, bool wide) {
     const int id = number(file, entries.integer());
     detail::GridCard card;
     card.in = number(file, entries.integer());
@@ -114,14 +114,15 @@ struct Geometry {
     entries.integer(), entries.integer();           // constraints, superelement
     if (card.moves >= 0) systems.grids[id] = card;  // -1: a point of a fluid
   }
-  void read_by_points(const Op2File& file, Entries& entries, detail::SystemKind kind, bool wide) {
+  void read_by_points(const Op2File& file, RecordReader& entries, detail::SystemKind kind,
+                      bool wide) {
     detail::SystemCard& system = systems.systems[number(file, entries.integer())];
     system.kind = kind;
     entries.integer(), entries.integer();  // its kind, 2
     system.in = number(file, entries.integer());
     for (Vector3d& point : system.points) point = entries.point(wide);
   }
-  void read_by_grids(const Op2File& file, Entries& entries, detail::SystemKind kind) {
+  void read_by_grids(const Op2File& file, RecordReader& entries, detail::SystemKind kind) {
     detail::SystemCard& system = systems.systems[number(file, entries.integer())];
     system.kind = kind;
     entries.integer(), entries.integer();  // its kind, 1

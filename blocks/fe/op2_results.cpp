@@ -13,7 +13,7 @@ using Eigen::VectorXd;
 namespace {
 
 /// Words of a record; reals of a table have the size of a word.
-struct Words {
+struct RecordWords {
   const std::string& bytes;
   const detail::WordLayout& layout;
 
@@ -72,7 +72,7 @@ std::vector<long long> read_lama(const Op2File& file, NormalModes& modes) {
   if (t.records.size() != 3)
     refuse(file, fmt::format("table {} has {} records", t.name, t.records.size()),
            "one subcase of normal modes has three: run one METHOD in one subcase");
-  const Words words{t.records[2], file.layout};
+  const RecordWords words{t.records[2], file.layout};
   if (words.size() % 7 != 0)
     refuse(file, fmt::format("table {} has {} words", t.name, words.size()), "7 for each mode");
   const auto n = static_cast<Index>(words.size() / 7);
@@ -91,7 +91,7 @@ constexpr long long kEigenvectors = 7, kSupportForces = 3;  ///< codes of tables
 
 /// Approach 2 (real eigenvalues), with a device as last digit; code of the table, which tells also
 /// SORT2 and complex data; mode; words per grid.
-void check_ident(const Op2File& file, const Op2Table& t, const Words& ident, long long code,
+void check_ident(const Op2File& file, const Op2Table& t, const RecordWords& ident, long long code,
                  long long mode) {
   if (ident.size() < 10 || ident.integer(0) / 10 != 2 || ident.integer(1) != code ||
       ident.integer(9) != 8)
@@ -116,7 +116,7 @@ std::map<int, MatrixXd> values_at_grids(const Op2File& file, const std::string& 
   std::map<int, MatrixXd> values;
   for (std::size_t k = 0; k < modes.size(); ++k) {
     check_ident(file, t, {t.records[1 + 2 * k], file.layout}, code, modes[k]);
-    const Words words{t.records[2 + 2 * k], file.layout};
+    const RecordWords words{t.records[2 + 2 * k], file.layout};
     if (words.size() % 8 != 0)
       refuse(file, fmt::format("table {} has {} words in a mode", name, words.size()),
              "8 for each grid");

@@ -89,13 +89,13 @@ std::vector<solve::RowMatrix<T>> moved(const MatrixXd& A,
 /// The outputs in finer arithmetic, rounded; none if that has no digit either.
 std::optional<solve::RowMatrix<T>> finer_outputs(const Factored& d, T s,
                                                  const solve::RowMatrix<T>& u) try {
-  using Finer = std::complex<solve::DoubleDouble>;
-  const solve::RowMatrix<Finer> inputs = solve::lifted<Finer>(u);
-  const Evaluation<Finer> point(d, solve::Scalar<Finer>::from(s), inputs,
-                                solve::Refinement::settled);
-  const solve::RowMatrix<Finer> y = point.outputs();
+  using Twofold = std::complex<solve::DoubleDouble>;
+  const solve::RowMatrix<Twofold> inputs = solve::lifted<Twofold>(u);
+  const Evaluation<Twofold> point(d, solve::Scalar<Twofold>::from(s), inputs,
+                                  solve::Refinement::settled);
+  const solve::RowMatrix<Twofold> y = point.outputs();
   solve::RowMatrix<T> rounded(y.rows(), y.cols());
-  for (Index i = 0; i < y.size(); ++i) rounded(i) = solve::Scalar<Finer>::round(y(i));
+  for (Index i = 0; i < y.size(); ++i) rounded(i) = solve::Scalar<Twofold>::round(y(i));
   if (!rounded.allFinite()) return {};
   return rounded;
 } catch (const Error&) {

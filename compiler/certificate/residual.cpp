@@ -17,8 +17,8 @@ namespace {
 using Eigen::MatrixXd;
 using linalg::at;
 
-/// Entries of a signal, and a sample of their rounding if it is known.
-struct Entries {
+/// Values of a signal, and a sample of their rounding if it is known.
+struct SignalValues {
   std::span<const double> value, rounding = {};
 };
 
@@ -54,7 +54,7 @@ struct EquationResidual {
   /// factor * c * value. Entries that share a unit count by the largest of them: a 0 in one frame
   /// is rounding in another.
   template <class Matrix>
-  void add(const Matrix& c, const Entries& x, int shared, double factor) {
+  void add(const Matrix& c, const SignalValues& x, int shared, double factor) {
     if (shared == 1 && rows() == 1 && x.rounding.empty()) {  // scalar diagrams: hardly any others
       RowResidual sum;
       for (std::size_t j = 0; j < x.value.size(); ++j) {
@@ -71,7 +71,7 @@ struct EquationResidual {
         add(i, term, factor * c(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
     }
   }
-  void add_identity(const Entries& x, int shared, double factor) {
+  void add_identity(const SignalValues& x, int shared, double factor) {
     for (std::size_t i = 0; i < rows(); ++i)
       add(i, entry_of(x, i, rows() == 1 ? 1 : shared), factor);
   }
@@ -80,7 +80,7 @@ struct EquationResidual {
     row[i].magnitude += std::abs(factor) * term.magnitude;
     row[i].rounding += std::abs(factor) * term.rounding;
   }
-  static RowResidual entry_of(const Entries& x, std::size_t j, int shared) {
+  static RowResidual entry_of(const SignalValues& x, std::size_t j, int shared) {
     return {x.value[j], largest_with(x.value, j, shared),
             x.rounding.empty() ? 0 : largest_with(x.rounding, j, shared)};
   }
@@ -133,10 +133,10 @@ struct Residual {
   double worst = 0;
   std::string where = {};
 
-  Entries of(int signal) const {
+  SignalValues of(int signal) const {
     const int first = at_hand.first[at(signal)];
     const std::size_t count = at(at_hand.first[at(signal) + 1] - first);
-    Entries result{{at_hand.values.data() + first, count}};
+    SignalValues result{{at_hand.values.data() + first, count}};
     if (at_hand.rounding.size() > 0) result.rounding = {at_hand.rounding.data() + first, count};
     return result;
   }

@@ -22,7 +22,7 @@ class Forest {
   const std::vector<int>& parents() const { return parent_; }
 
  private:
-  using Edge = std::pair<int, int>;  ///< child, parent
+  using ChildParent = std::pair<int, int>;  ///< child, parent
   enum class ParentLink { moved, moved_inverted, read, none };
 
   /// A force on a body does not make its source the parent.
@@ -33,8 +33,8 @@ class Forest {
                                                                  : ParentLink::moved_inverted;
   }
 
-  std::vector<Edge> edges(ParentLink link, const std::vector<int>& rank) const {
-    std::vector<Edge> list;
+  std::vector<ChildParent> edges(ParentLink link, const std::vector<int>& rank) const {
+    std::vector<ChildParent> list;
     for (const Equation& e : g_.equations) {
       if (e.target < 0) continue;
       const Signal& to = g_.signals[at(e.target)];
@@ -44,7 +44,7 @@ class Forest {
         if (from >= 0 && from != to.node) list.emplace_back(to.node, from);
       }
     }
-    std::sort(list.begin(), list.end(), [&](const Edge& a, const Edge& b) {
+    std::sort(list.begin(), list.end(), [&](const ChildParent& a, const ChildParent& b) {
       return std::pair(rank[at(a.first)], rank[at(a.second)]) <
              std::pair(rank[at(b.first)], rank[at(b.second)]);
     });

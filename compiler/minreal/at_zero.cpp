@@ -67,10 +67,10 @@ void report(const IndependentRows& rows, const char* why, RemovedStates& result)
   }
 }
 
-using Rows = MatrixXd (*)(const StateSpace&);
+using RowsOfModel = MatrixXd (*)(const StateSpace&);
 
 /// One repetition for one side; false if all states count.
-bool take_out_once(detail::Sampled& s, Rows rows_of_model, bool by_inputs, MatrixXd& energy,
+bool take_out_once(detail::Sampled& s, RowsOfModel rows_of_model, bool by_inputs, MatrixXd& energy,
                    RemovedStates& result) {
   const MatrixXd M = rows_of_model(s.model);
   const MatrixXd rounding =

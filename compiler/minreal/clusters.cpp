@@ -42,12 +42,12 @@ Matrix turned(const Matrix& b, const Matrix& c) {
 MatrixXd turn(const MatrixXd& b, const MatrixXd& c) { return turned(b, c); }
 MatrixXcd turn(const MatrixXcd& b, const MatrixXcd& c) { return turned(b, c); }
 
-bool Parts::one() const {
+bool UncoupledParts::one() const {
   return std::adjacent_find(of_mode.begin(), of_mode.end(), std::not_equal_to<>()) == of_mode.end();
 }
 
-Parts find_parts(const MatrixXd& A, const MatrixXd& vectors, const ModeSet& m) {
-  Parts parts;
+UncoupledParts find_parts(const MatrixXd& A, const MatrixXd& vectors, const ModeSet& m) {
+  UncoupledParts parts;
   std::vector<int>& part = parts.of_state;
   part.resize(at(A.rows()));
   std::iota(part.begin(), part.end(), 0);
@@ -71,7 +71,7 @@ Parts find_parts(const MatrixXd& A, const MatrixXd& vectors, const ModeSet& m) {
   return parts;
 }
 
-void balance_sides(const Parts& parts, ModeSet& m) {
+void balance_sides(const UncoupledParts& parts, ModeSet& m) {
   const std::vector<int>& part = parts.of_mode;
   if (parts.one() || m.b.cols() == 0 || m.c.cols() == 0) return;
   // Each step comes closer by half the way, in logarithms.

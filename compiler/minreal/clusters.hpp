@@ -29,17 +29,18 @@ Eigen::MatrixXd turn(const Eigen::MatrixXd& b, const Eigen::MatrixXd& c);
 Eigen::MatrixXcd turn(const Eigen::MatrixXcd& b, const Eigen::MatrixXcd& c);
 
 /// Parts of a model that share no state, by number.
-struct Parts {
+struct UncoupledParts {
   std::vector<int> of_state, of_mode;
   bool one() const;  ///< all modes are of one part
 };
 /// A mode is of the part of the state where it is largest; parts whose modes share a frequency
 /// count as one. `vectors`: states x modes. O(n^2).
-Parts find_parts(const Eigen::MatrixXd& A, const Eigen::MatrixXd& vectors, const ModeSet& m);
+UncoupledParts find_parts(const Eigen::MatrixXd& A, const Eigen::MatrixXd& vectors,
+                          const ModeSet& m);
 
 /// Entries of vectors (states x modes) outside the part of their mode are rounding, and become 0.
 template <class Matrix>
-void keep_to_parts(const Parts& parts, Matrix&& vectors) {
+void keep_to_parts(const UncoupledParts& parts, Matrix&& vectors) {
   for (Eigen::Index j = 0; j < vectors.cols(); ++j)
     for (Eigen::Index i = 0; i < vectors.rows(); ++i)
       if (parts.of_state[static_cast<std::size_t>(i)] != parts.of_mode[static_cast<std::size_t>(j)])
@@ -49,7 +50,7 @@ void keep_to_parts(const Parts& parts, Matrix&& vectors) {
 /// Modes of one part may be of any size relative to those of another: an unobservable one with a
 /// large response to an input would hide the others. Scales the inputs and the outputs of each
 /// part, each by the largest of its port, to one size.
-void balance_sides(const Parts& parts, ModeSet& m);
+void balance_sides(const UncoupledParts& parts, ModeSet& m);
 
 /// True if no combination of the rows of M vanishes up to rounding. A row far below the others
 /// may itself be at rounding level.

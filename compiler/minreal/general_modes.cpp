@@ -159,7 +159,7 @@ General general_modes(const StateSpace& model, double resolution) {
   find_clusters(e, p.clusters, 100 * kEpsilon * size, resolution, m);
   const MatrixXd right_sizes = (e.scale.cwiseInverse().asDiagonal() * e.V).cwiseAbs(),
                  left_sizes = (e.W * e.scale.asDiagonal()).cwiseAbs().transpose();
-  const Parts parts =
+  const UncoupledParts parts =
       find_parts(model.A, unit_columns(right_sizes).cwiseMax(unit_columns(left_sizes)), m);
   keep_to_parts(parts, e.V);
   keep_to_parts(parts, e.W.transpose());

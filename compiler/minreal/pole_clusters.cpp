@@ -16,7 +16,7 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using linalg::at;
-using Places = std::vector<Index>;
+using Indices = std::vector<Index>;
 
 constexpr double kOneNumber =
     100 * kEpsilon;               ///< of a matrix's norm: as near as that, poles are one
@@ -40,7 +40,7 @@ std::vector<std::vector<int>> find_components(const MatrixXd& A) {
 }
 
 struct PoleCluster {
-  Places poles;
+  Indices poles;
   bool whole;     ///< judged as a whole
   double radius;  ///< by which rounding may have moved the poles of a multiple one
 };
@@ -56,7 +56,7 @@ void add_component(const MatrixXd& scaled, const std::vector<int>& states, PoleC
   const Index first = std::ssize(p.component), n = std::ssize(states);
   const MatrixXd A = scaled(states, states);
   const linalg::Spectrum s = linalg::spectrum(A, kIll);
-  Places places(at(n));
+  Indices places(at(n));
   for (Index j = 0; j < n; ++j) places[at(j)] = first + j;
   const VectorXd scale = p.e.scale(states);
   p.e.values.segment(first, n) = s.values;
@@ -128,8 +128,8 @@ namespace {
 
 /// The poles of a component in and outside of a cluster.
 struct ComponentSplit {
-  Places in, out;
-  ComponentSplit(const PoleClusters& p, const Places& cluster, int component) {
+  Indices in, out;
+  ComponentSplit(const PoleClusters& p, const Indices& cluster, int component) {
     for (Index j = 0; j < std::ssize(p.component); ++j) {
       if (p.component[at(j)] != component) continue;
       (std::binary_search(cluster.begin(), cluster.end(), j) ? in : out).push_back(j);
@@ -147,13 +147,13 @@ MatrixXd real_basis(const MatrixXcd& V) {
 
 /// A component's part of a cluster, in scaled states.
 struct ClusterShare {
-  Places in, out, at_states;
+  Indices in, out, at_states;
   MatrixXd Q, W;                                                  ///< W Q = 1
   MatrixXcd V_in, W_in, V_out, W_out, T_in, T_out, G, G_inverse;  ///< V_in = Q G
   MatrixXd A, B, C;                                               ///< of the component
 };
 
-ClusterShare share(const PoleClusters& p, const Places& cluster, int component,
+ClusterShare share(const PoleClusters& p, const Indices& cluster, int component,
                    const StateSpace& m) {
   const ComponentSplit split(p, cluster, component);
   ClusterShare s{split.in, split.out, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}};
@@ -229,7 +229,7 @@ void add_share(const ClusterShare& s, OwnModel& own) {
 
 }  // namespace
 
-OwnModel own_model(const PoleClusters& p, const Places& cluster, const StateSpace& model) {
+OwnModel own_model(const PoleClusters& p, const Indices& cluster, const StateSpace& model) {
   const Index n = model.A.rows(), nu = model.B.cols(), ny = model.C.rows();
   OwnModel own;
   own.V = MatrixXd::Zero(n, std::ssize(cluster));
@@ -242,7 +242,7 @@ OwnModel own_model(const PoleClusters& p, const Places& cluster, const StateSpac
     const ClusterShare s = share(p, cluster, c, model);
     if (s.in.empty()) continue;
     const VectorXd scale = p.e.scale(s.at_states);
-    Places own_places;
+    Indices own_places;
     for (Index k = 0; k < std::ssize(s.in); ++k) own_places.push_back(own.model.A.rows() + k);
     own.V(s.at_states, own_places) = scale.asDiagonal() * s.Q;
     own.W(own_places, s.at_states) = s.W * scale.cwiseInverse().asDiagonal();

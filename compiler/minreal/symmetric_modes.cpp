@@ -41,18 +41,18 @@ void find_clusters(GradedModes& e, VectorXd& z, double resolution, ModeSet& m) {
 }
 
 /// Inputs and outputs of a second-order model in its scaled coordinates.
-struct Ports {
+struct CoordinatePorts {
   MatrixXd b, bq;   ///< coordinates x inputs: on the velocities, on the positions
   MatrixXd cq, cv;  ///< coordinates x outputs
 };
 
-Ports ports(const StateSpace& model, const Symmetric& s) {
+CoordinatePorts ports(const StateSpace& model, const Symmetric& s) {
   return {s.D_inverse * model.B(s.qdot, Eigen::all), s.D_inverse * model.B(s.q, Eigen::all),
           (model.C(Eigen::all, s.q) * s.D).transpose(),
           (model.C(Eigen::all, s.qdot) * s.D).transpose()};
 }
 
-void turn_clusters(const Ports& p, const ModeSet& m, MatrixXd& Q) {
+void turn_clusters(const CoordinatePorts& p, const ModeSet& m, MatrixXd& Q) {
   MatrixXd both(Q.rows(), p.cq.cols() + p.cv.cols());
   both << p.cq, p.cv;
   const MatrixXd b = unit_columns(MatrixXd(Q.transpose() * p.b)),
@@ -76,7 +76,8 @@ MatrixXd clear(const MatrixXd& Q, const MatrixXd& c) {
 /// An output that reads positions and rates, C = cq + s cv at each pole s, if that is more than
 /// a factor to real vectors: one of the two poles of an overdamped mode may be left out, or a
 /// motion with a phase between modes of one frequency.
-bool mixes_levels(const GradedModes& e, const VectorXd& z, const Ports& p, const ModeSet& m) {
+bool mixes_levels(const GradedModes& e, const VectorXd& z, const CoordinatePorts& p,
+                  const ModeSet& m) {
   const MatrixXd q = clear(e.modes.V, p.cq), v = clear(e.modes.V, p.cv);
   const Index n = z.size();
   for (Index first = 0, last; first < n; first = last) {
@@ -131,7 +132,7 @@ void find_mixing(const GradedModes& e, const VectorXd& z, ModeSet& m) {
 }
 
 /// Rigid motions, q'' = b u: all are needed if inputs move and outputs place each of them.
-void find_rigid(const Ports& p, const MatrixXd& Q, ModeSet& m) {
+void find_rigid(const CoordinatePorts& p, const MatrixXd& Q, ModeSet& m) {
   const Index n = m.size();
   std::vector<Index> rigid;
   for (Index j = 0; j < n; ++j)
@@ -157,7 +158,7 @@ std::optional<Symmetric> symmetric_modes(const StateSpace& model, double resolut
   Symmetric s;
   s.q = std::move(form.q), s.qdot = std::move(form.qdot);
   s.D = std::move(form.D), s.D_inverse = std::move(form.D_inverse);
-  const Ports p = ports(model, s);
+  const CoordinatePorts p = ports(model, s);
   if (p.bq.size() && p.bq.cwiseAbs().maxCoeff() > 0) return std::nullopt;
   std::optional<ProportionalModes> proportional = proportional_modes(form);
   if (!proportional) return std::nullopt;
@@ -167,7 +168,7 @@ std::optional<Symmetric> symmetric_modes(const StateSpace& model, double resolut
   if (mixes_levels(e, z, p, m) || shares_a_pole(e.modes.lambda, z, m)) return std::nullopt;
   s.Q = e.modes.V;
   m.lambda = e.modes.lambda.cwiseAbs();
-  const Parts parts = find_parts(form.S, s.Q.cwiseAbs(), m);
+  const UncoupledParts parts = find_parts(form.S, s.Q.cwiseAbs(), m);
   keep_to_parts(parts, s.Q);
   turn_clusters(p, m, s.Q);
   m.omega = m.lambda.cwiseSqrt();

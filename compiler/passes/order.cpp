@@ -68,12 +68,12 @@ using Vertex = boost::graph_traits<Digraph>::vertex_descriptor;
 
 /// Strong component of every unknown signal; components come out dependencies first. An input that
 /// moves (an output that sees) one of its signals does so with all of them.
-struct Components {
+struct StrongComponents {
   std::vector<int> of;
   std::vector<std::size_t> size;  ///< in signals
 };
 
-Components components(const Graph& g, const Arrows& needs) {
+StrongComponents components(const Graph& g, const Arrows& needs) {
   std::vector<std::pair<int, int>> edges;
   edges.reserve(needs.arrows() + at(needs.count()));
   for (int s = 0; s < needs.count(); ++s)
@@ -97,7 +97,7 @@ Components components(const Graph& g, const Arrows& needs) {
                                                  .discover_time_map(map(time))
                                                  .root_vertex(static_cast<Vertex>(all)));
   component.pop_back();
-  Components result{std::move(component), std::vector<std::size_t>(at(count - 1), 0)};
+  StrongComponents result{std::move(component), std::vector<std::size_t>(at(count - 1), 0)};
   for (int s = 0; s < static_cast<int>(g.signals.size()); ++s)
     if (is_unknown(g.signals[at(s)])) ++result.size[at(result.of[at(s)])];
   return result;
@@ -106,7 +106,7 @@ Components components(const Graph& g, const Arrows& needs) {
 /// Keeps signals that an input (or, without inputs, any state) moves, and that an output (or any
 /// state) sees; sets the others aside. Exception: loops that are seen are kept, since a loop
 /// without input is at rest only if it has one solution.
-void set_aside(Stage& stage, const Arrows& needs, const Components& parts) {
+void set_aside(Stage& stage, const Arrows& needs, const StrongComponents& parts) {
   Graph& g = stage.graph;
   std::vector<int> sources, sinks, states;
   for (int s = 0; s < static_cast<int>(g.signals.size()); ++s) {
@@ -137,7 +137,7 @@ void set_aside(Stage& stage, const Arrows& needs, const Components& parts) {
   }
 }
 
-void find_loops(Stage& stage, const Components& parts) {
+void find_loops(Stage& stage, const StrongComponents& parts) {
   const Graph& g = stage.graph;
   const std::vector<int>& component = parts.of;
   std::vector<Loop> loops(parts.size.size());
@@ -170,7 +170,7 @@ void find_loops(Stage& stage, const Components& parts) {
 
 Stage order(Stage stage) {
   const auto needs = dependencies(stage);
-  const Components parts = components(stage.graph, needs);
+  const StrongComponents parts = components(stage.graph, needs);
   set_aside(stage, needs, parts);
   // Equations and rows follow their unknowns, not the signal that they are written for.
   std::vector<char> row_active(stage.rows.size(), 0);

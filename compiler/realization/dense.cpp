@@ -22,9 +22,9 @@ using linalg::at;
 using solve::RowMatrix;
 
 /// Releases waiting tasks, even if this task has thrown: its numbers are not used then.
-struct Done {
+struct CountDown {
   std::latch& latch;
-  ~Done() { latch.count_down(); }
+  ~CountDown() { latch.count_down(); }
 };
 
 class DenseWriter {
@@ -51,7 +51,7 @@ class DenseWriter {
     constexpr std::size_t kFirst = 4;
     std::latch first(kFirst);
     const auto prepare = [&](std::size_t i) {
-      const Done done{first};
+      const CountDown done{first};
       switch (i) {
         case 0: return propagation.form(0, 2);
         case 1: return propagation.form(1, 2);

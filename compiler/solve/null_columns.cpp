@@ -9,9 +9,9 @@ using linalg::at;
 
 /// F z = value e_row, front by front: L from the leaves to the root, then U back (substitution.cpp
 /// with the size of every number's terms).
-class Column {
+class UnitColumn {
  public:
-  explicit Column(const Factors<double>& factors) : f_(factors), plan_(factors.plan()) {}
+  explicit UnitColumn(const Factors<double>& factors) : f_(factors), plan_(factors.plan()) {}
 
   const std::vector<CancellingSum>& solve(int row, double value) {
     row_ = row, value_ = value;
@@ -94,7 +94,7 @@ KeptMatrix null_columns(const Factors<double>& patched) {
   for (int i = 0; i < m; ++i) patch_at[at(patches[at(i)].unknown)] = i;
   std::vector<std::vector<std::pair<int, CancellingSum>>> Z(at(m));
   SparseRows M(at(m));  // transposed
-  Column column(patched);
+  UnitColumn column(patched);
   for (int j = 0; j < m; ++j) {
     const std::vector<CancellingSum>& z = column.solve(patches[at(j)].row, patches[at(j)].value);
     std::map<int, CancellingSum> row{{j, {1, 1}}};

@@ -99,19 +99,19 @@ constexpr double kTerms = 100;
 
 /// The precision to use if one has too few digits; void: there is none.
 template <class T>
-struct Finer {
+struct FinerScalar {
   using type = void;
 };
 template <>
-struct Finer<std::complex<long double>> {
+struct FinerScalar<std::complex<long double>> {
   using type = std::complex<solve::DoubleDouble>;
 };
 template <>
-struct Finer<std::complex<solve::DoubleDouble>> {
+struct FinerScalar<std::complex<solve::DoubleDouble>> {
   using type = solve::Complex100;
 };
 template <>
-struct Finer<solve::Complex50> {
+struct FinerScalar<solve::Complex50> {
   using type = solve::Complex100;
 };
 
@@ -163,8 +163,8 @@ double largest_ratio(const Eigen::MatrixXd& terms, const Eigen::MatrixXd& size) 
 constexpr Index kManyStates = 16;
 
 /// States that do not act on each other: all in one part if they are few.
-using Parts = std::vector<std::vector<int>>;
-Parts uncoupled(const Eigen::MatrixXd& A) {
+using StateGroups = std::vector<std::vector<int>>;
+StateGroups uncoupled(const Eigen::MatrixXd& A) {
   if (A.rows() >= kManyStates) return linalg::uncoupled_parts(A);
   std::vector<int> all(at(A.rows()));
   std::iota(all.begin(), all.end(), 0);
@@ -179,7 +179,7 @@ Dynamics part_of(const Dynamics& d, const std::vector<int>& states) {
 /// |K^-1| |K| |X| and |D| + |C| |X| + |C K^-1| |K| |X|, independent of the units of states and
 /// ports. Infinite if double has less than two digits of K^-1.
 template <class T>
-double cancels(const Dynamics& d, const Parts& parts, const T& s,
+double cancels(const Dynamics& d, const StateGroups& parts, const T& s,
                const solve::BlockResponse<T>& r) {
   using Eigen::MatrixXcd;
   using Eigen::MatrixXd;
@@ -204,7 +204,7 @@ double cancels(const Dynamics& d, const Parts& parts, const T& s,
 
 /// (s - A)^-1 B. Throws singular.
 template <class T>
-Dense<T> states_at(const Block& block, const Dynamics& d, const Parts& parts, const T& s) {
+Dense<T> states_at(const Block& block, const Dynamics& d, const StateGroups& parts, const T& s) {
   Dense<T> X(d.A.rows(), d.B.cols());
   for (const std::vector<int>& states : parts) {
     const Dynamics part = part_of(d, states);
@@ -221,12 +221,12 @@ Dense<T> states_at(const Block& block, const Dynamics& d, const Parts& parts, co
 template <class T>
 solve::BlockResponse<T> general_response(const Block& block, const Dynamics& d, const T& s,
                                          double enough) {
-  const Parts parts = uncoupled(d.A);
+  const StateGroups parts = uncoupled(d.A);
   solve::BlockResponse<T> r{states_at(block, d, parts, s), lifted<T>(d.D)};
   for (Index i = 0; i < r.Y.rows(); ++i)
     for (Index j = 0; j < r.Y.cols(); ++j)
       for (Index k = 0; k < r.X.rows(); ++k) r.Y(i, j) += lift<T>(d.C(i, k)) * r.X(k, j);
-  using More = typename Finer<T>::type;
+  using More = typename FinerScalar<T>::type;
   if constexpr (!std::is_void_v<More>)
     if (d.A.rows() > 0 && !(cancels(d, parts, s, r) * solve::Scalar<T>::epsilon() <= enough)) {
       const solve::BlockResponse<More> finer = general_response(block, d, as<More>(s), enough);

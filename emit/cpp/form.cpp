@@ -76,19 +76,19 @@ std::optional<BlockDiagonalForm> oscillators(const StateSpace& model) {
 using Long = std::complex<long double>;
 using MatrixXcl = Eigen::Matrix<Long, Eigen::Dynamic, Eigen::Dynamic>;
 
-/// Eigenvectors V of A, W = V^-1, and W A V on its diagonal.
-struct Vectors {
+/// SharpEigenvectors V of A, W = V^-1, and W A V on its diagonal.
+struct SharpEigenvectors {
   MatrixXcl V, W;
   Eigen::Matrix<Long, Eigen::Dynamic, 1> values;
 };
 
-/// Eigenvectors of double, refined in long double: with R = W A V nearly diagonal, V (I + X) with
-/// X_ij = R_ij / (R_jj - R_ii) is so to second order [Dongarra, Moler, Wilkinson 1983]. The slow
-/// poles of a stiff model thus keep their digits.
-Vectors sharp_eigenvectors(const MatrixXd& A) {
+/// SharpEigenvectors of double, refined in long double: with R = W A V nearly diagonal, V (I + X)
+/// with X_ij = R_ij / (R_jj - R_ii) is so to second order [Dongarra, Moler, Wilkinson 1983]. The
+/// slow poles of a stiff model thus keep their digits.
+SharpEigenvectors sharp_eigenvectors(const MatrixXd& A) {
   const linalg::Eigensystem coarse = linalg::eigensystem(A);
   const MatrixXd scaled = coarse.scale.cwiseInverse().asDiagonal() * A * coarse.scale.asDiagonal();
-  Vectors e;
+  SharpEigenvectors e;
   e.V = (coarse.scale.cwiseInverse().asDiagonal() * coarse.V).cast<Long>();
   for (int step = 0;; ++step) {
     e.W = Eigen::PartialPivLU<MatrixXcl>(e.V).inverse();
@@ -109,7 +109,7 @@ Vectors sharp_eigenvectors(const MatrixXd& A) {
 
 /// A pair a +- bj of A as [[a, b], [-b, a]] on the real and imaginary part of its vector.
 BlockDiagonalForm general_modes(const MatrixXd& A) {
-  const Vectors e = sharp_eigenvectors(A);
+  const SharpEigenvectors e = sharp_eigenvectors(A);
   const Index n = A.rows();
   BlockDiagonalForm modes{MatrixXl::Zero(n, n), MatrixXl::Zero(n, n), MatrixXl::Zero(n, n)};
   Index at = 0;

@@ -208,14 +208,14 @@ constexpr double kNearZero = 1e-7;
 constexpr double kAtZero = 1e-14;
 
 /// Numbers of poles of the shown model by region.
-struct Places {
+struct PoleCounts {
   int zero = 0;
   int near = 0;  ///< right of the axis, but not far from 0
   int axis = 0, right = 0;
 };
 
-Places places(const std::vector<Pole>& poles) {
-  Places found;
+PoleCounts pole_counts(const std::vector<Pole>& poles) {
+  PoleCounts found;
   const double fastest = poles.empty() ? 0 : poles.back().omega;
   for (const Pole& p : poles) {
     const int n = p.pair ? 2 : 1;
@@ -241,7 +241,7 @@ std::size_t set_aside(const Graph& g) {
 std::string poles(int n) { return count(static_cast<std::size_t>(n), "pole"); }
 
 /// Hidden poles are missing in the minimal model, which may be stable although the scene is not.
-std::string unstable(const Places& shown, int right) {
+std::string unstable(const PoleCounts& shown, int right) {
   const int hidden = right - shown.right - shown.near;
   std::string text = fmt::format("<b>Unstable</b>: {} right of the imaginary axis", poles(right));
   if (hidden > 0)
@@ -255,7 +255,7 @@ std::string unstable(const Places& shown, int right) {
 
 /// By the poles of all states, if the certificate has them, else by those of the minimal model.
 std::string stability(const Subject& s, const FullCertificate* full) {
-  const Places p = places(s.poles);
+  const PoleCounts p = pole_counts(s.poles);
   const FullCertificate::Poles* all = full && full->poles.done ? &full->poles : nullptr;
   const int right = all ? all->right : p.right;
   if (right > 0) return unstable(p, right);

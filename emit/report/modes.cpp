@@ -27,7 +27,7 @@ Eigen::Matrix<double, 2, 3> view_of(const ModePlotOptions& o) {
 }
 
 /// The structure in one mode: places, and displacements as drawn.
-struct Drawing {
+struct DrawnMode {
   const ModeShapes& shapes;
   const ModeShape& mode;
   double size = 1;   ///< of the structure [m]
@@ -47,7 +47,7 @@ double size_of(const std::vector<StructurePoint>& points) {
 
 /// Displacement on the line from a to b, at 0 <= t <= 1: along the line linear, across it the cubic
 /// with the displacements and slopes of both ends, as of a beam.
-Vector3d between(const Drawing& d, int a, int b, double t) {
+Vector3d between(const DrawnMode& d, int a, int b, double t) {
   const Vector3d line = d.place(b) - d.place(a), along = line.normalized();
   const auto across = [&](const Vector3d& v) -> Vector3d { return v - along * along.dot(v); };
   const Vector3d ua = d.moved(a), ub = d.moved(b);
@@ -69,7 +69,7 @@ void add(Plot& plot, const char* label, PointList points, PointStyle mark) {
   plot.frames.front().marks.push_back(mark);
 }
 
-PointList lines_of(const Drawing& d, const Eigen::Matrix<double, 2, 3>& view, bool displaced) {
+PointList lines_of(const DrawnMode& d, const Eigen::Matrix<double, 2, 3>& view, bool displaced) {
   constexpr int kPieces = 16;
   PointList list;
   for (const auto& [a, b] : d.shapes.lines) {
@@ -85,7 +85,7 @@ PointList lines_of(const Drawing& d, const Eigen::Matrix<double, 2, 3>& view, bo
   return list;
 }
 
-PointList points_of(const Drawing& d, const Eigen::Matrix<double, 2, 3>& view) {
+PointList points_of(const DrawnMode& d, const Eigen::Matrix<double, 2, 3>& view) {
   PointList list;
   for (int i = 0; i < static_cast<int>(d.shapes.points.size()); ++i)
     list.add(view * (d.place(i) + d.moved(i)));
@@ -116,7 +116,7 @@ PointList axes_of(Plot& plot, const Eigen::Matrix<double, 2, 3>& view, double si
 }
 
 /// The names of up to 12 bodies, in the middle of their first line.
-void add_names(Plot& plot, const Drawing& d, const Eigen::Matrix<double, 2, 3>& view) {
+void add_names(Plot& plot, const DrawnMode& d, const Eigen::Matrix<double, 2, 3>& view) {
   constexpr std::size_t kMost = 12;
   std::vector<PlotText> texts;
   std::set<int> parents;
@@ -151,7 +151,7 @@ void set_ranges(Plot& plot) {
   frame.height = static_cast<int>(height);
 }
 
-std::string caption_of(const Drawing& d) {
+std::string caption_of(const DrawnMode& d) {
   Index largest = 0;
   d.mode.translation.colwise().norm().maxCoeff(&largest);
   std::string text = fmt::format("{} Hz, damping {} %; {} moves most.", number(d.mode.pole.hertz),
@@ -211,7 +211,7 @@ std::string figures_of(const ModeShapes& shapes) {
 Plot mode_plot(const ModeShapes& shapes, std::size_t which, const ModePlotOptions& options) {
   check_options(options);
   const ModeShape& mode = shapes.modes[which];
-  Drawing d{shapes, mode, size_of(shapes.points), 0};
+  DrawnMode d{shapes, mode, size_of(shapes.points), 0};
   d.scale = options.amplitude * d.size;
   const auto view = view_of(options);
   Plot plot{.title = options.title.empty() ? fmt::format("mode of {} Hz", number(mode.pole.hertz))

@@ -24,7 +24,7 @@ double round_up(double t) {
   return 10 * unit;
 }
 
-struct Clock {
+struct TimeGrid {
   double until = 1;
   int steps = 500;
   bool coarse = false;  ///< the fastest modes turn between steps
@@ -32,8 +32,8 @@ struct Clock {
 
 /// Eight periods of the slowest oscillation, six time constants of the slowest decay, at most eight
 /// of the fastest growth.
-Clock clock(const Subject& s) {
-  Clock c;
+TimeGrid time_grid(const Subject& s) {
+  TimeGrid c;
   double swing = 0, decay = 0, grow = 0;
   const std::vector<Pole> list = moving(s.poles);
   for (const Pole& p : list) {
@@ -59,7 +59,7 @@ struct Steps {
   double error = 0;  ///< of all outputs, see Trajectory::error
 };
 
-Steps steps(const Subject& s, const std::vector<IoPair>& pairs, const Clock& c) {
+Steps steps(const Subject& s, const std::vector<IoPair>& pairs, const TimeGrid& c) {
   Steps result;
   for (const IoPair& p : pairs) {
     if (result.of.count(p.input)) continue;
@@ -133,7 +133,7 @@ Plot step_plot(const Subject& s, const Steps& all, const std::vector<IoPair>& pa
 }  // namespace
 
 Plot step_plot(const Subject& s, const std::vector<IoPair>& pairs) {
-  return step_plot(s, steps(s, pairs, clock(s)), pairs);
+  return step_plot(s, steps(s, pairs, time_grid(s)), pairs);
 }
 
 std::string step_plots(const Subject& s, const std::vector<IoPair>& pairs) {
@@ -142,7 +142,7 @@ std::string step_plots(const Subject& s, const std::vector<IoPair>& pairs) {
   figures.resize(std::min(count, kFigures));
   std::vector<IoPair> shown;
   for (const auto& f : figures) shown.insert(shown.end(), f.begin(), f.end());
-  const Clock c = clock(s);
+  const TimeGrid c = time_grid(s);
   const Steps all = steps(s, shown, c);
   std::string text = fmt::format(
       "<p>All states at rest, then a unit step at time 0. {} steps of {:.4g} s, {}{}</p>\n"

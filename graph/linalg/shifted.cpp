@@ -29,7 +29,7 @@ double largest_change(const MatrixXcd& change, const MatrixXcd& of) {
 ShiftedSolver::ShiftedSolver(const MatrixXd& A, const MatrixXd& B)
     : n_(A.rows()), columns_(B.cols()) {
   for (std::vector<int>& states : uncoupled_parts(A)) {
-    Part p;
+    UncoupledPart p;
     p.A = A(states, states);
     p.B = B(states, Eigen::all);
     MatrixXd scaled = p.A;
@@ -47,7 +47,7 @@ ShiftedSolver::ShiftedSolver(const MatrixXd& A, const MatrixXd& B)
 Solution ShiftedSolver::solve(std::complex<double> s) const {
   Solution result{MatrixXcd(n_, columns_), 1, 0};
   double nearest = HUGE_VAL, farthest = 0;
-  for (const Part& part : parts_) {
+  for (const UncoupledPart& part : parts_) {
     const Solution own = solve(part, s, nearest, farthest);
     if (own.z.size() == columns_ * std::ssize(part.states))
       result.z(part.states, Eigen::all) = own.z;
@@ -58,7 +58,7 @@ Solution ShiftedSolver::solve(std::complex<double> s) const {
   return result;
 }
 
-Solution ShiftedSolver::solve(const Part& p, std::complex<double> s, double& nearest,
+Solution ShiftedSolver::solve(const UncoupledPart& p, std::complex<double> s, double& nearest,
                               double& farthest) {
   const Index n = p.A.rows();
   MatrixXcd shifted = -p.T;

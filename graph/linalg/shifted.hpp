@@ -21,7 +21,7 @@ class ShiftedSolver {
 
  private:
   /// States that no others act on, nor they on others.
-  struct Part {
+  struct UncoupledPart {
     std::vector<int> states;
     Eigen::MatrixXd A, B;
     Eigen::VectorXd scale;  ///< of the states
@@ -30,11 +30,11 @@ class ShiftedSolver {
     double size = 0;        ///< largest entry of T
   };
   /// As the whole; the range of distances grows by those of this part, unless its own rcond counts.
-  static Solution solve(const Part& part, std::complex<double> s, double& nearest,
+  static Solution solve(const UncoupledPart& part, std::complex<double> s, double& nearest,
                         double& farthest);
 
   Eigen::Index n_, columns_;
-  std::vector<Part> parts_;
+  std::vector<UncoupledPart> parts_;
 };
 
 }  // namespace titop::linalg

@@ -18,22 +18,22 @@ namespace {
 constexpr int kSmall = 12;
 constexpr int kMost = 128;  ///< rows
 /// Small loops are many: no memory is allocated for them.
-using Small =
+using SmallMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kSmall, kSmall>;
 
 /// From M^k, k = 1, 2, 4 ... 1024: the row sums v of M^k give max (M v)_i / v_i, never below the
 /// radius [Collatz 1942]; if that stays loose, |M^1024|^(1/1024), the norm's own factor n having
 /// become n^(1/1024).
-double perron_by_squaring(const Small& M) {
-  using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kSmall, 1>;
-  Small power = M;
+double perron_by_squaring(const SmallMatrix& M) {
+  using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kSmall, 1>;
+  SmallMatrix power = M;
   double log_scale = 0, weight = 1;
   for (int step = 0; step <= 10; ++step, weight /= 2) {
-    const Column v = power.rowwise().sum();
+    const SmallVector v = power.rowwise().sum();
     const double size = v.maxCoeff();
     if (!(size > 0)) return 0;
     if (v.minCoeff() > 0) {
-      const Column grown = M.lazyProduct(v).cwiseQuotient(v);
+      const SmallVector grown = M.lazyProduct(v).cwiseQuotient(v);
       if (grown.maxCoeff() - grown.minCoeff() <= 1e-3 * grown.maxCoeff()) return grown.maxCoeff();
     }
     log_scale += weight * std::log(size);
@@ -67,7 +67,7 @@ Powers perron_by_powers(Eigen::Index n, int steps, Times times) {
   return {grown.maxCoeff(), false};
 }
 
-double perron(const Small& M) { return perron_by_squaring(M); }
+double perron(const SmallMatrix& M) { return perron_by_squaring(M); }
 double perron(const RowMatrix& M) {
   return perron_by_powers(M.rows(), 200, [&](const VectorXd& v) -> VectorXd { return M * v; })
       .radius;
@@ -266,14 +266,14 @@ class WithoutSingletons {
     void put(std::size_t place) { ++entries, places ^= place; }
     void drop(std::size_t place) { --entries, places ^= place; }
   };
-  using Lines = boost::container::small_vector<CountedLine, kSmall>;
+  using CountedLines = boost::container::small_vector<CountedLine, kSmall>;
 
   double entry(std::size_t i, std::size_t j) const {
     return M_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
   }
   /// Removes a line with its single entry and the line across it. entry(k, place): of line k there.
   template <class Entry>
-  void leave(Lines& lines, Lines& across, std::size_t line, Entry entry) {
+  void leave(CountedLines& lines, CountedLines& across, std::size_t line, Entry entry) {
     --left_;
     const std::size_t place = lines[line].places;
     CountedLine& other = across[place];
@@ -287,11 +287,11 @@ class WithoutSingletons {
     other.entries = -1;
   }
   template <class Test>
-  static bool all(const Lines& lines, Test test) {
+  static bool all(const CountedLines& lines, Test test) {
     return std::all_of(lines.begin(), lines.end(),
                        [&](const CountedLine& l) { return test(l.entries); });
   }
-  static List list(const Lines& lines) {
+  static List list(const CountedLines& lines) {
     List result;
     for (std::size_t i = 0; i < lines.size(); ++i)
       if (lines[i].entries >= 0) result.push_back(static_cast<Eigen::Index>(i));
@@ -300,7 +300,7 @@ class WithoutSingletons {
 
   const MatrixXd& M_;
   std::size_t n_, left_;
-  Lines rows_, cols_;
+  CountedLines rows_, cols_;
 };
 
 double skeel_radius_of_core(const MatrixXd& M) {
@@ -316,10 +316,10 @@ double skeel_radius_of_core(const MatrixXd& M) {
     if (whole.settled) return whole.radius;
     return perron_of_parts(product_of_sizes(inverse, M), std::bitset<kMost>());
   }
-  const Small inverse = inverse_by_rows<Small>(M);
+  const SmallMatrix inverse = inverse_by_rows<SmallMatrix>(M);
   if (inverse.size() == 0) return 0;
-  return perron_of_parts<Small>(inverse.cwiseAbs().lazyProduct(M.cwiseAbs()),
-                                std::bitset<kSmall>());
+  return perron_of_parts<SmallMatrix>(inverse.cwiseAbs().lazyProduct(M.cwiseAbs()),
+                                      std::bitset<kSmall>());
 }
 
 }  // namespace

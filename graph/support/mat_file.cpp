@@ -117,16 +117,16 @@ MatMatrix read_variable(const std::filesystem::path& path, mat_t* file, matvar_t
   return result;
 }
 
-using Dims = std::array<std::size_t, 2>;
+using MatSizes = std::array<std::size_t, 2>;
 
 Variable text_variable(const std::string& text) {
-  Dims dims = {text.empty() ? 0U : 1U, text.size()};
+  MatSizes dims = {text.empty() ? 0U : 1U, text.size()};
   return Variable(Mat_VarCreate(nullptr, MAT_C_CHAR, MAT_T_UINT8, 2, dims.data(),
                                 const_cast<char*>(text.data()), 0));
 }
 
 Variable cell_variable(const MatTexts& list) {
-  Dims dims = {list.texts.size(), 1};
+  MatSizes dims = {list.texts.size(), 1};
   Variable cell(
       Mat_VarCreate(list.name.c_str(), MAT_C_CELL, MAT_T_CELL, 2, dims.data(), nullptr, 0));
   for (int i = 0; const std::string& text : list.texts)
@@ -135,7 +135,8 @@ Variable cell_variable(const MatTexts& list) {
 }
 
 Variable matrix_variable(const MatMatrix& m) {
-  Dims dims = {static_cast<std::size_t>(m.value.rows()), static_cast<std::size_t>(m.value.cols())};
+  MatSizes dims = {static_cast<std::size_t>(m.value.rows()),
+                   static_cast<std::size_t>(m.value.cols())};
   return Variable(Mat_VarCreate(m.name.c_str(), MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dims.data(),
                                 const_cast<double*>(m.value.data()), 0));
 }

@@ -5,7 +5,7 @@ namespace titop::python {
 namespace {
 
 using Path = std::filesystem::path;
-using Band = std::array<double, 2>;
+using LowHigh = std::array<double, 2>;
 
 void bind_diagram_files(py::module_& m) {
   m.def("diagram_json", &diagram_json, "diagram"_a, "The diagram as JSON text, to the last bit.");
@@ -58,7 +58,7 @@ void bind_model_files(py::module_& m) {
 }
 
 ReportOptions report_options(const std::string& title, const std::string& remark, bool diagrams,
-                             const Band& band_hz, double until,
+                             const LowHigh& band_hz, double until,
                              const std::vector<std::pair<std::string, std::string>>& pairs) {
   ReportOptions o;
   o.title = title, o.remark = remark, o.diagrams = diagrams;
@@ -70,18 +70,18 @@ void bind_reports(py::module_& m) {
   m.def(
       "report_html",
       [](const System& s, const std::string& title, const std::string& remark, bool diagrams,
-         const Band& band_hz, double until,
+         const LowHigh& band_hz, double until,
          const std::vector<std::pair<std::string, std::string>>& pairs) {
         return report_html(s, report_options(title, remark, diagrams, band_hz, until, pairs));
       },
       "system"_a, py::kw_only(), "title"_a = "", "remark"_a = "", "diagrams"_a = true,
-      "band_hz"_a = Band{0, 0}, "until"_a = 0.0,
+      "band_hz"_a = LowHigh{0, 0}, "until"_a = 0.0,
       "pairs"_a = std::vector<std::pair<std::string, std::string>>(), Unlocked(),
       "A report as one self-contained HTML text: diagrams (by Graphviz), poles, Bode plots, step "
       "responses, certificate. band_hz [Hz] and until [s]: 0, by the poles.");
 }
 
-PlotOptions plot_options(const std::string& title, const Band& band_hz, double until) {
+PlotOptions plot_options(const std::string& title, const LowHigh& band_hz, double until) {
   return {title, band_hz, until};
 }
 
@@ -89,40 +89,40 @@ void bind_plots(py::module_& m) {
   m.def(
       "plot_bode",
       [](const System& s, const std::string& output, const std::string& input,
-         const std::string& title, const Band& band_hz) {
+         const std::string& title, const LowHigh& band_hz) {
         return plot_bode(s, output, input, plot_options(title, band_hz, 0));
       },
-      "system"_a, "output"_a, "input"_a, py::kw_only(), "title"_a = "", "band_hz"_a = Band{0, 0},
+      "system"_a, "output"_a, "input"_a, py::kw_only(), "title"_a = "", "band_hz"_a = LowHigh{0, 0},
       Unlocked(),
       "Magnitude and phase of one output for one input, by their names, as SVG; band [Hz].");
   m.def(
       "plot_step",
       [](const System& s, const std::string& output, const std::string& input,
          const std::string& title, double until) {
-        return plot_step(s, output, input, plot_options(title, Band{0, 0}, until));
+        return plot_step(s, output, input, plot_options(title, LowHigh{0, 0}, until));
       },
       "system"_a, "output"_a, "input"_a, py::kw_only(), "title"_a = "", "until"_a = 0.0, Unlocked(),
       "Response of one output to a unit step of one input, as SVG, until a time [s].");
   m.def(
       "plot_sigma",
-      [](const System& s, const std::string& title, const Band& band_hz) {
+      [](const System& s, const std::string& title, const LowHigh& band_hz) {
         return plot_sigma(s, plot_options(title, band_hz, 0));
       },
-      "system"_a, py::kw_only(), "title"_a = "", "band_hz"_a = Band{0, 0}, Unlocked(),
+      "system"_a, py::kw_only(), "title"_a = "", "band_hz"_a = LowHigh{0, 0}, Unlocked(),
       "Singular values of the whole transfer, as SVG; band [Hz].");
   m.def(
       "plot_nyquist",
       [](const ControlLoop& l, const std::string& title) {
-        return plot_nyquist(l, plot_options(title, Band{0, 0}, 0));
+        return plot_nyquist(l, plot_options(title, LowHigh{0, 0}, 0));
       },
       "loop"_a, py::kw_only(), "title"_a = "", Unlocked(),
       "L(j omega) of each loop point with the others closed, as SVG.");
   m.def(
       "plot_poles",
-      [](const System& s, const std::string& title, const Band& band_hz) {
+      [](const System& s, const std::string& title, const LowHigh& band_hz) {
         return plot_poles(s, plot_options(title, band_hz, 0));
       },
-      "system"_a, py::kw_only(), "title"_a = "", "band_hz"_a = Band{0, 0}, Unlocked(),
+      "system"_a, py::kw_only(), "title"_a = "", "band_hz"_a = LowHigh{0, 0}, Unlocked(),
       "Poles and transmission zeros, as SVG; band [Hz].");
   m.def(
       "plot_mode",

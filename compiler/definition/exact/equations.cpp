@@ -113,22 +113,22 @@ class ExactAssembly {
   const Echelon& rows() const { return rows_; }
 
  private:
-  using RowBlock = std::vector<Entries>;  ///< some rows at once
+  using ExactRows = std::vector<Entries>;  ///< some rows at once
 
   /// rows += m * (columns from `first` on)
-  static void add(RowBlock& rows, const ExactMatrix& m, int first, int sign = 1) {
+  static void add(ExactRows& rows, const ExactMatrix& m, int first, int sign = 1) {
     for (Index i = 0; i < m.rows; ++i)
       for (Index j = 0; j < m.cols; ++j)
         if (m(i, j) != 0)
           rows[static_cast<std::size_t>(i)][first + static_cast<int>(j)] +=
               sign > 0 ? m(i, j) : -m(i, j);
   }
-  void take(const RowBlock& rows) {
+  void take(const ExactRows& rows) {
     for (const Entries& row : rows) rows_.add(to_row(row));
   }
 
   /// rows -= factor * terms
-  void subtract(RowBlock& rows, const ExactMatrix& factor, const std::vector<Term>& terms) {
+  void subtract(ExactRows& rows, const ExactMatrix& factor, const std::vector<Term>& terms) {
     for (const Term& t : terms) {
       const ExactMatrix c = factor * exact_coefficient(g_, t, values_, rotations_);
       const int integral = columns_.first_state() + columns_.integral[at(t.signal)];
@@ -141,7 +141,7 @@ class ExactAssembly {
         subtract_forces(rows, Residue(-1) * c, drive_[at(g_.signals[at(t.signal)].channel)].added);
     }
   }
-  void subtract_forces(RowBlock& rows, const ExactMatrix& factor, std::span<const int> equations) {
+  void subtract_forces(ExactRows& rows, const ExactMatrix& factor, std::span<const int> equations) {
     for (const int e : equations) {
       const Part& part = g_.equations[at(e)].part;
       subtract(rows,
@@ -152,7 +152,7 @@ class ExactAssembly {
   }
 
   void define(int column, int size, const std::vector<Term>& terms) {
-    RowBlock rows(at(size));
+    ExactRows rows(at(size));
     add(rows, ExactMatrix::identity(size), column);
     subtract(rows, ExactMatrix::identity(size), terms);
     take(rows);
@@ -165,7 +165,7 @@ class ExactAssembly {
       const Part& part = g_.equations[at(e)].part;
       const ExactMatrix S = part.whole() ? ExactMatrix::identity(channel.size)
                                          : orthonormal_fractions(part.rows(), part.name());
-      RowBlock rows(static_cast<std::size_t>(S.rows));
+      ExactRows rows(static_cast<std::size_t>(S.rows));
       add(rows, S, columns_.of_signal[at(channel.accel)]);
       subtract(rows, ExactMatrix::identity(S.rows), g_.equations[at(e)].terms);
       take(rows);
@@ -173,7 +173,7 @@ class ExactAssembly {
       for (std::size_t i = 0; i < rest.entries.size(); ++i) rest.entries[i] -= projector.entries[i];
     }
     if (drive.free == 0) return;
-    RowBlock rows(at(channel.size));
+    ExactRows rows(at(channel.size));
     add(rows, rest, columns_.of_signal[at(channel.force)]);
     subtract_forces(rows, rest, drive.force);
     subtract_forces(rows, rest, drive.added);
@@ -187,7 +187,7 @@ class ExactAssembly {
     const int end = end_signal(g_, index);
     const auto equation = [&](int column, const Signal* y) {
       const Index row = y ? y->first : 0, size = y ? y->size : d->A.rows();
-      RowBlock rows(static_cast<std::size_t>(size));
+      ExactRows rows(static_cast<std::size_t>(size));
       add(rows, ExactMatrix::identity(size), column);
       if (node.state >= 0)
         add(rows, y ? exact.states(row, size) : exact_matrix(d->A),
@@ -210,7 +210,7 @@ class ExactAssembly {
     for (std::size_t s = 0; s < columns_.integral.size(); ++s) {
       const int first = columns_.integral[s], size = g_.signals[s].size;
       if (first < 0) continue;
-      RowBlock rows(at(2 * size));
+      ExactRows rows(at(2 * size));
       for (int i = 0; i < size; ++i) {
         rows[at(i)] = {{columns_.first_rate() + first + i, 1}, {columns_.of_signal[s] + i, -1}};
         rows[at(size + i)] = {{columns_.first_rate() + first + size + i, 1},
