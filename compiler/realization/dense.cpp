@@ -74,7 +74,7 @@ class DenseWriter {
       };
     });
     if (kept.is_large()) kept = {};
-    add_known(d_, *w_, m_);
+    add_direct_terms(d_, *w_, m_);
   }
 
  private:

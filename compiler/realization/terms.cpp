@@ -47,7 +47,7 @@ void find_coefficients(const Factored& d, const Writing& writing, double* to) {
                      Eigen::OuterStride<>(t.inner)));
 }
 
-void add_known(const Factored& d, const Writing& writing, StateSpace& model) {
+void add_direct_terms(const Factored& d, const Writing& writing, StateSpace& model) {
   const Index states = d.layout().order();
   for (const Target& t : writing.targets) {
     const bool state = t.row < states;

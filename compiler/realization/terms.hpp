@@ -10,7 +10,8 @@ namespace titop::detail {
 /// zeros. O(terms).
 void find_coefficients(const Factored& data, const Writing& writing, double* to);
 
-/// Adds the targets' terms in states and inputs themselves. O(terms).
-void add_known(const Factored& data, const Writing& writing, StateSpace& model);
+/// Adds the terms of all targets that no unknown carries: states and inputs times numbers.
+/// O(terms).
+void add_direct_terms(const Factored& data, const Writing& writing, StateSpace& model);
 
 }  // namespace titop::detail

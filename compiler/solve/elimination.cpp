@@ -6,9 +6,9 @@
 #include <numeric>
 #include <titop/compiler/solve/elimination.hpp>
 #include <titop/compiler/solve/equilibration.hpp>
+#include <titop/compiler/solve/front_elimination.hpp>
 #include <titop/compiler/solve/scalar.hpp>
 #include <titop/compiler/solve/scaling.hpp>
-#include <titop/compiler/solve/steps.hpp>
 #include <titop/graph/linalg/index.hpp>
 
 namespace titop::solve {

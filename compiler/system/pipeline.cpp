@@ -76,7 +76,7 @@ constexpr Pass kPasses[] = {
     {{"forces", "no internal force is read that the motion does not determine, or it is noted",
       "closed chains are over-constrained"},
      steps::forces,
-     steps::has_released},
+     steps::is_overconstrained},
     {{"digits", "no motion or force depends on digits that the data do not have",
       "there are flexible bodies"},
      steps::digits,

@@ -95,7 +95,7 @@ Compiled reduce(Compiled c) {
   return c;
 }
 
-bool has_released(const Compiled& c) { return !c.skeleton->stage.released.empty(); }
+bool is_overconstrained(const Compiled& c) { return !c.skeleton->stage.released.empty(); }
 
 Compiled forces(Compiled c) {
   add_notes(detail::judge_internal_forces(*c.data), c.skeleton->stage);

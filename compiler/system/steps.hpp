@@ -48,7 +48,7 @@ bool has_no_pivot(const Compiled& c);
 /// No output and no controller reads an internal force that the motion does not determine, or it is
 /// noted (compiler/loops/internal_forces.hpp). Throws kinematic_loop.
 Compiled forces(Compiled c);
-bool has_released(const Compiled& c);
+bool is_overconstrained(const Compiled& c);
 
 /// No motion and no force depends on digits that the data of flexible bodies do not have
 /// (compiler/solve/data_digits.hpp). Throws improper.

@@ -6,7 +6,7 @@
 #include <complex>
 #include <cstdint>
 #include <memory>
-#include <titop/compiler/solve/steps.hpp>
+#include <titop/compiler/solve/front_elimination.hpp>
 #include <vector>
 
 #include "sparse_system.hpp"

@@ -1,6 +1,6 @@
 #include <cmath>
+#include <titop/compiler/solve/front_elimination.hpp>
 #include <titop/compiler/solve/lanes.hpp>
-#include <titop/compiler/solve/steps.hpp>
 #include <titop/graph/linalg/wide.hpp>
 
 namespace titop::solve {
@@ -42,7 +42,8 @@ template <int V>
   load_behind<V>(a + k * n, k, end, from);
   load_behind<V>(bounds + k * n, k, end, bound);
   for (int v = 0; v < V; ++v)
-    for (int e = 0; e < 4; ++e) bound[v][e] = kept_bound(std::abs(from[v][e]), bound[v][e]);
+    for (int e = 0; e < 4; ++e)
+      bound[v][e] = pivot_row_magnitude(std::abs(from[v][e]), bound[v][e]);
   const double pivot = a[k * n + k];
   for (std::ptrdiff_t i = k + 1; i < rows; ++i) {
     double* const row = a + i * n;

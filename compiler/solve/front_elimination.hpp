@@ -9,7 +9,7 @@
 
 /// Steps of elimination on a front: rows x n entries, row-major, and `bounds`, as many, for the
 /// sums of the magnitudes of the terms of entries. For double and its complex numbers in the
-/// widest vectors that the processor has (steps.cpp); the same bits on every machine.
+/// widest vectors that the processor has (front_elimination.cpp); the same bits on every machine.
 namespace titop::solve {
 
 /// The largest of n numbers of which none is negative; NaN, of any sign bit, is above all others.
@@ -31,7 +31,7 @@ constexpr double kOrdinary = 1e-6;
 
 /// The magnitude of an entry of a pivot row in the sums of others: its own, or that of its terms if
 /// it has lost more than is ordinary.
-inline double kept_bound(double size, double bound) {
+inline double pivot_row_magnitude(double size, double bound) {
   return size > kOrdinary * bound ? size : bound;
 }
 
@@ -45,7 +45,8 @@ template <class T, class Size>
   const Divisor<T> over(from[0]);
   double* const bound = bounds + k * n + k + 1;
   const std::ptrdiff_t right = end - k - 1;
-  for (std::ptrdiff_t j = 0; j < right; ++j) bound[j] = kept_bound(size(from[j + 1]), bound[j]);
+  for (std::ptrdiff_t j = 0; j < right; ++j)
+    bound[j] = pivot_row_magnitude(size(from[j + 1]), bound[j]);
   for (std::ptrdiff_t i = k + 1; i < rows; ++i) {
     T* to = a + i * n + k;
     if (to[0] == T(0)) continue;
@@ -75,7 +76,7 @@ template <std::size_t N, class T, class Size>
       add(N, size(l), bounds + p * n + j, bound);
     }
     if (i < end)  // a pivot row
-      for (std::size_t c = 0; c < N; ++c) bound[c] = kept_bound(size(y[c]), bound[c]);
+      for (std::size_t c = 0; c < N; ++c) bound[c] = pivot_row_magnitude(size(y[c]), bound[c]);
     std::copy_n(y, N, a + i * n + j);
     std::copy_n(bound, N, bounds + i * n + j);
   }
