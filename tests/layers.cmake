@@ -20,13 +20,12 @@ room(blocks                    blocks/fe)
 room(blocks/diagram_file       blocks/fe blocks)
 room(compiler/passes)
 room(compiler/diagram          compiler/passes)
-room(compiler/definition       compiler/passes)
+room(compiler/definition)
 room(compiler/solve            compiler/passes compiler/definition)
 room(compiler/loops            compiler/passes compiler/solve)
-room(compiler/realization      compiler/passes compiler/solve)
-room(compiler/certificate      compiler/passes compiler/definition compiler/solve
-                               compiler/realization)
-room(compiler/index_reduction  compiler/passes compiler/solve compiler/loops)
+room(compiler/realization      compiler/solve)
+room(compiler/certificate      compiler/definition compiler/solve)
+room(compiler/index_reduction  compiler/solve compiler/loops)
 room(compiler/minreal          compiler/passes compiler/definition compiler/solve
                                compiler/realization compiler/certificate)
 room(compiler/system           compiler/passes compiler/diagram compiler/definition compiler/solve
@@ -42,16 +41,16 @@ room(analysis/certify          compiler/passes compiler/definition compiler/cert
                                compiler/minreal compiler/system)
 room(analysis/reduction        compiler/system)
 # Above blocks: it makes bodies of parts of a scene.
-room(analysis/damping          blocks/fe blocks compiler/system analysis/reduction)
+room(analysis/damping          blocks compiler/system analysis/reduction)
 room(analysis/bracket          compiler/system)
 # Above blocks: it divides distributed beams into elements.
-room(analysis/distributed      blocks/fe blocks compiler/system analysis/reduction)
+room(analysis/distributed      blocks compiler/system analysis/reduction)
 room(analysis/norms)
-# Deeper than System: it cuts diagrams at loop points.
+# Deeper than System: it cuts the graph of a stage at loop points, and takes poles at 0 exactly.
 room(analysis/control          compiler/passes compiler/minreal compiler/system analysis/norms
                                analysis/simulation analysis/reduction)
-# Deeper than System: places of points are in the equations between accelerations.
-room(analysis/shapes           compiler/passes compiler/loops compiler/minreal compiler/system)
+# Deeper than System: places of points follow from equations between accelerations.
+room(analysis/shapes           compiler/loops compiler/system)
 # Deeper than System: it opens parameters, and counts occurrences in exact arithmetic.
 room(analysis/lft              compiler/passes compiler/definition compiler/system analysis/norms
                                analysis/reduction)
@@ -91,6 +90,8 @@ internal(compiler/system/compile_graph.hpp analysis/certify/ analysis/reduction/
          analysis/damping/ analysis/control/ analysis/distributed/ analysis/shapes/)
 # analysis/certify/ measures differences beside the rounding of the elimination.
 internal(compiler/system/elimination_terms.hpp analysis/certify/)
+# analysis/lft/ takes columns and rows of the transfers of opened systems.
+internal(compiler/system/transfer_part.hpp analysis/lft/)
 
 # The room of a file: that of the longest folder.
 function(room_of file result)
@@ -138,6 +139,7 @@ foreach(file ${files})
     string(REGEX REPLACE "^titop/" "" header "${header}")
     string(REGEX REPLACE "^generate/" "app/generate/" header "${header}")
     room_of(${header} from)
+    list(APPEND "used ${room}" "${from}")
     if(from STREQUAL room OR "${file} ${header}" STREQUAL "app/generate/test_source.cpp titop.hpp")
       continue()
     elseif(NOT from STREQUAL "graph" AND NOT from IN_LIST "allowed ${room}")
@@ -151,14 +153,46 @@ foreach(file ${files})
   endforeach()
 endforeach()
 
+# The page has a row for each room, and no other, a line for each room that is deeper than System, and
+# every internal header with its users.
 file(READ ${ROOT}/docs/architecture.md document)
 foreach(name ${names})
+  foreach(other ${allowed\ ${name}})
+    if(NOT other IN_LIST "used ${name}")
+      string(APPEND wrong "\n  no file of ${name} includes ${other}: take it out of the table")
+    endif()
+    if(name MATCHES "^(analysis|emit)/" AND other MATCHES "^compiler/"
+       AND NOT other STREQUAL "compiler/system" AND NOT document MATCHES "\n- `${name}`: ")
+      string(APPEND wrong "\n  docs/architecture.md has no line - `${name}`: for ${other}")
+    endif()
+  endforeach()
   list(TRANSFORM "allowed ${name}" REPLACE "(.+)" "`\\1`" OUTPUT_VARIABLE allowed)
   list(JOIN allowed ", " allowed)
   string(FIND "${document}" "| `${name}` | ${allowed} |" place)
   if(place EQUAL -1)
     string(APPEND wrong "\n  docs/architecture.md has no row | `${name}` | ${allowed} |")
   endif()
+endforeach()
+string(REGEX MATCHALL "\n\\| `(app/generate|[a-z]+)(/[a-z_]+)?` \\| [^|]*\\| " rows "${document}")
+list(LENGTH rows count)
+list(LENGTH names count_names)
+if(NOT count EQUAL count_names)
+  string(APPEND wrong "\n  docs/architecture.md has ${count} rows, there are ${count_names} rooms")
+endif()
+foreach(header ${headers})
+  string(FIND "${document}" "- `${header}`:" start)
+  if(start EQUAL -1)
+    string(APPEND wrong "\n  docs/architecture.md has no line - `${header}`:")
+    continue()
+  endif()
+  string(SUBSTRING "${document}" ${start} -1 line)
+  string(REGEX REPLACE "\n(- |\n).*" "" line "${line}")  # up to the next one
+  foreach(user ${header} ${users\ ${header}})
+    string(FIND "${line}" "`${user}`" place)
+    if(place EQUAL -1)
+      string(APPEND wrong "\n  docs/architecture.md does not name ${user} at ${header}")
+    endif()
+  endforeach()
 endforeach()
 if(wrong)
   message(FATAL_ERROR "includes against the table of rooms:${wrong}")
