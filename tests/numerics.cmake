@@ -1,8 +1,14 @@
-# docs/numerics.md has every constant by which the compiler decides, as `file:kName = value`, and no
-# other: every "constexpr double k..." of compiler/, and those that its rooms share.
+# docs/numerics.md has every constant by which the compiler and some analyses decide, as
+# `file:kName = value`, and no other: every "constexpr double k..." of these rooms, and those that they
+# share.
 cmake_policy(VERSION 3.25)
 file(READ ${ROOT}/docs/numerics.md page)
-file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/compiler/*.hpp ${ROOT}/compiler/*.cpp)
+set(files)
+foreach(room compiler analysis/shapes analysis/distributed analysis/damping analysis/norms
+             analysis/simulation)
+  file(GLOB_RECURSE of_room RELATIVE ${ROOT} ${ROOT}/${room}/*.hpp ${ROOT}/${room}/*.cpp)
+  list(APPEND files ${of_room})
+endforeach()
 set(wrong "")
 set(count 0)
 foreach(path ${files} graph/linalg/rounding.hpp)
