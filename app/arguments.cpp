@@ -25,7 +25,7 @@ constexpr const char* kCommands = R"(usage:
       NAME.py      Python module, and its arrays NAME_A.npy ...
       FILE.json    the model with its poles, certificate and notes
       FILE.csv     frequency response; needs --omega
-  titop import FILE                        what is in a file of a finite-element program, its checks
+  titop import FILE                        contents of a file of a finite-element program, its checks
                                            and ports: OP4, OP2, f06, DMIG punch, MAT-file, CSV of
                                            modes, CalculiX; with -o and --parent a body: BODY.json,
                                            a diagram of it alone, or BODY.csv, its modal data

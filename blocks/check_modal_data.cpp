@@ -175,8 +175,8 @@ void check_mass(const ModalData& d) {
                 fmt::format("D_P is negative in {}, by {:.2g} of its entry there (noise of the "
                             "data: {:.1g})",
                             component_name(all.component), -all.smallest, all.noise),
-                "the inertia in D_P is about P: that about the centre of mass and what the mass "
-                "there adds");
+                "the inertia in D_P is about P: that about the centre of mass, plus the mass times "
+                "the square of its distance");
   throw Error(
       Code::bad_modes,
       fmt::format("the modes carry more mass than there is: D_P - L_P' L_P is negative in {}, "

@@ -52,7 +52,7 @@ int main() {
 
   std::printf("report.html: %d sections, %d diagrams, %d plots\n", count(page, "<section"),
               count(page, "<svg class=\"drawing\""), count(page, "<figure class=\"plot\""));
-  std::printf("units follow from what is driven and read: [rad / (N m)] %s, [m/s² / N] %s\n",
+  std::printf("units follow from the inputs and outputs: [rad / (N m)] %s, [m/s² / N] %s\n",
               count(page, "magnitude [rad / (N m)]") ? "yes" : "no",
               count(page, "magnitude [m/s² / N]") ? "yes" : "no");
   std::printf("scripts: %d, addresses elsewhere: %d\n", count(page, "<script"),

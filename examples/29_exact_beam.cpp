@@ -1,6 +1,6 @@
 // An arm of two links, which are beams as the partial differential equations have them: in closed
 // form at every s, with all of their infinitely many modes. Its transfers are exact, and measure
-// how many elements and modes a finite model needs, and what the lumping of its mesh costs.
+// the error of finite models, and with it the elements and modes that an accuracy needs.
 #include <cmath>
 #include <cstdio>
 #include <titop/titop.hpp>

@@ -21,7 +21,7 @@ class ClosedForm {
   /// Kinematics of the ports as if the block did not deform, without states: the geometry of closed
   /// chains. The block constrains no motion: each port moves by itself, too.
   virtual Kinematics undeformed() const = 0;
-  /// "has infinitely many modes", as in Block::why_singular, and what to take in its place.
+  /// "has infinitely many modes", as in Block::why_singular, and a block to take in its place.
   virtual Block::Cause no_state_space() const = 0;
 
  protected:

@@ -88,7 +88,7 @@ struct MarginOptions {
 /// 1e-8 where two of them merge (the curve touches the circle or the axis). Norms by `norm_hinf`.
 ///
 /// Modes that are unreachable or unobservable from the cut are not in L: System::poles() shows
-/// their stability. A margin holds for changes of this loop alone.
+/// their stability. A margin is that of changes of this loop alone.
 ///
 /// Throws size for an L that is not square or whose matrices do not fit each other, not_finite,
 /// ill_posed if 1 + L is singular at high frequencies, bad_value for a delay that is negative or

@@ -35,7 +35,7 @@ constexpr const char* kKeepDigits =
 }  // namespace
 
 Diagram diagram_of(const Arguments& a) {
-  Diagram diagram = read_diagram(a.words[1]);  // refuses what is no diagram
+  Diagram diagram = read_diagram(a.words[1]);  // refuses other files
   if (a.set.empty()) return diagram;
   const fe::TextFile file = fe::read_text(a.words[1]);
   Json json = Json::parse(file.content);

@@ -284,7 +284,7 @@ class ManualAssembly {
         return multipliers().rows(list);
       row += size;
     }
-    throw std::logic_error("nothing holds it");
+    throw std::logic_error("the point is in no constraint");
   }
 
   Table<S> measured(const Control& c) const {

@@ -8,7 +8,7 @@ namespace titop::generate {
 namespace {
 
 constexpr const char* kHead =
-    R"(// Written by `titop generate`. Compares what titop makes of
+    R"(// Written by `titop generate`. Compares titop's model of
 // {scene}
 // with equations of motion that were assembled by hand. A program by itself; run
 // it where the diagram file is.

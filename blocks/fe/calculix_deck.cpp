@@ -84,7 +84,7 @@ class DeckReader {
       for (const auto& [name, value] : card.parameters)
         if (name != "NSET")
           mistakes_.add(bad_line(file_, card.line, fmt::format("*NODE parameter {}", name),
-                                 "NSET only: this reader does not know what others do"));
+                                 "NSET only: this reader does not support others"));
     return card;
   }
 

@@ -165,7 +165,7 @@ class Importer {
     if (all.rigid) tell_of_lumped_mass();
   }
 
-  /// A body of the modes of a run, which says where it is clamped.
+  /// A body of the modes of a run; its grids at rest are those that may be clamped.
   void clamped_run(const NormalModes& modes, const std::function<ModalData()>& body) {
     for (const auto& [grid, shape] : modes.shapes) result_.ports.push_back(std::to_string(grid));
     tell("at rest in all modes, for the parent: {}", fmt::join(grids_at_rest(modes), ", "));

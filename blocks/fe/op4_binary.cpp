@@ -70,7 +70,7 @@ Op4Matrix read_matrix(FortranRecords& records, Op4Taken& taken) {
     if (words < 0 || data.size() % l.word != 0 ||
         static_cast<std::size_t>(words) != data.size() / l.word)
       refuse(fmt::format("a column of {} words in {} bytes", words, data.size()),
-             "as many as it says");
+             "as many bytes as its words take");
     if (row != 0 && l.word == 4 && words % words_per_value(h.type) != 0)
       refuse(fmt::format("a column of {} words", words),
              fmt::format("whole values of type {}", h.type));

@@ -30,8 +30,8 @@ struct Op4Taken {
   long long entries = 0;
 };
 
-/// The empty matrix of this header; `unread` says why it is not to be filled. Refuses invalid
-/// headers.
+/// The empty matrix of this header; `unread` is the reason if it is not to be filled. Refuses
+/// invalid headers.
 Op4Matrix make_matrix(const Op4Header& header, Op4Taken& taken, const Refuse& refuse);
 
 /// Puts values into a column from a row on (both from 0); refuses rows outside, values that are not

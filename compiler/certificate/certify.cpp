@@ -83,7 +83,7 @@ Check certify(const Factored& d) {
          fmt::format("{} is satisfied only to {:.1g}", c.residual_where, c.residual)});
   if (weak.least > 0)
     check.notes.push_back(
-        {Note::Kind::warning, "certify", "no digit is left: in double a pivot is rounding alone"});
+        {Note::Kind::warning, "certify", "no digit remains: in double a pivot is rounding alone"});
   return check;
 }
 

@@ -174,7 +174,7 @@ MatrixXcd transfer(const Graph& graph, std::complex<double> s, ParameterValues v
         Code::singular,
         fmt::format("{}: at s = {}{:+}j the equations have no unique solution (rcond {:.1g})",
                     graph.name, s.real(), s.imag(), solution.rcond),
-        "s may be a pole; try another s, or compile it to see what is wrong");
+        "s may be a pole; try another s, or compile it: its errors name the cause");
   return a.F.bottomRows(a.outputs) - a.E.bottomRows(a.outputs) * solution.z;
 }
 

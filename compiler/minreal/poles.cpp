@@ -67,7 +67,8 @@ bool proportional_poles(const StateSpace& model, const SecondOrder& form, std::v
   return true;
 }
 
-/// The eigensystem of a whole model, of which each pole takes the nearest that is left.
+/// The eigensystem of a whole model, of which each pole takes the nearest eigenvalue that no other
+/// has taken.
 class Shares {
  public:
   explicit Shares(const MatrixXd& A)

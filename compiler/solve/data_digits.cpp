@@ -282,7 +282,7 @@ class DigitJudge {
     if (left > port.noise() || !imposed) {
       notes_.push_back(
           {Note::Kind::warning, "digits",
-           fmt::format("{} {}: less than one digit of its effect is left", name, cause.why)});
+           fmt::format("{} {}: less than one digit of its effect is known", name, cause.why)});
       return;
     }
     const char* const how = port.by_shapes ? "is driven" : "is free";

@@ -49,7 +49,7 @@ solve::BlockResponse<T> response_of(const Node& node, const Dynamics& dynamics, 
 
 Error no_digit_left(const Factored& data, std::complex<double> s) {
   return {Code::singular,
-          fmt::format("{} has a pole at s = {}{:+}j, or no digit is left there in this precision",
+          fmt::format("{} has a pole at s = {}{:+}j, or no digit remains there in this precision",
                       data.graph().name, s.real(), s.imag()),
           "evaluate at another s, or with Precision::digits50"};
 }

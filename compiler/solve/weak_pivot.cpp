@@ -74,7 +74,7 @@ Mistake no_digit_left(const Factored& d) {
           fmt::format("the algebraic loop through {} has no unique solution, or none with a digit "
                       "in double",
                       ports.empty() ? "a sum of many terms" : some_names(ports)),
-          {"no digit is left: in double a pivot there is rounding alone"},
+          {"no digit remains: in double a pivot there is rounding alone"},
           "break the direct feedthrough there: give one block of the loop a state, or change a "
           "gain"};
 }

@@ -240,7 +240,7 @@ TEST_CASE("@NAME@: poles") {
 inline constexpr const char* kStaticGain = R"(
 TEST_CASE("@NAME@: static gain") {
   static const double expected[][2] = @VALUES@;
-  // Not compared: what is 0 by nature at rest, such as a rate.
+  // Not compared: outputs that are 0 at rest, such as rates.
   const Indices outputs = @SILENT_OUTPUTS@;
   const Indices inputs = @SILENT_INPUTS@;
   CHECK(transfer_error(0, expected, outputs, inputs) <= @TOLERANCE@);

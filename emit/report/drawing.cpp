@@ -45,7 +45,7 @@ std::string drawing(const std::string& dot_text, const std::string& subject) {
   const std::size_t start = dot.out.find("<svg"), end = dot.out.find('>', start);
   if (dot.code != 0 || end == std::string::npos || dot.out.rfind("</svg>") == std::string::npos)
     refuse(fmt::format("dot ends with {}", dot.code),
-           "this Graphviz may be broken, or too old (dot -V says which it is): take another, or ",
+           "this Graphviz may be broken, or too old (its version: dot -V): take another, or ",
            {dot.err.substr(0, dot.err.find('\n'))});
   const std::string tag = dot.out.substr(start, end - start);
   std::string body = dot.out.substr(end + 1, dot.out.rfind("</svg>") - end - 1);

@@ -50,8 +50,8 @@ struct ModePlotOptions {
 
 /// The structure in a mode, given by its place in system.poles(): the ports of its bodies at rest
 /// and displaced (`mode_shapes`), lines between the ports of each body. The caption has frequency,
-/// damping, and what has no position. Throws the errors of mode_shapes, and bad_value for options
-/// that are not finite or an amplitude that is not positive. Cost: that of mode_shapes.
+/// damping, and the blocks without a position. Throws the errors of mode_shapes, and bad_value for
+/// options that are not finite or an amplitude that is not positive. Cost: that of mode_shapes.
 std::string plot_mode(const System& system, int pole, const ModePlotOptions& options = {});
 
 /// Writes a plot to a file. Throws bad_file.

@@ -12,7 +12,7 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
-/// The error that is left after a step of refinement is about the square of its change: at most the
+/// The error after a step of refinement is about the square of its change: at most the
 /// rounding unit.
 constexpr double kMoved = kHalfDigits;
 

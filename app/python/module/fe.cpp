@@ -4,7 +4,7 @@ namespace titop::python {
 namespace {
 
 // Matrices that a script may replace are given away as copies, since a view would outlive its
-// memory; read-only ones, since what a script writes into a copy is lost.
+// memory; read-only ones, since changes of a copy would be lost.
 template <class Data, class M>
 auto copy_of(M Data::*matrix) {
   return [matrix](const Data& data) { return read_only(py::array(py::cast(M(data.*matrix)))); };

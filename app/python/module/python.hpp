@@ -86,7 +86,7 @@ auto warned(F make, const std::vector<Note>& known = {}) {
   return result;
 }
 
-/// The object as a T (Position, Inertia, SixAxes); TypeError with `expected` and what came.
+/// The object as a T (Position, Inertia, SixAxes); TypeError with `expected` and the object's type.
 template <class T>
 T taken(const py::handle& object, const char* expected) {
   py::detail::make_caster<T> caster;
