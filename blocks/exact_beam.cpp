@@ -22,13 +22,13 @@ using Complex50 = boost::multiprecision::cpp_complex_50;
 
 constexpr Index kChild = 0, kParent = 6, kScalars = 12;
 
-/// s, and the numbers of the damping law there.
+/// Factors of the damping law at s.
 template <class Z>
 struct Point {
   using R = RealOf<Z>;
   Z gain;   ///< s^2 / (1 + stiffness s)
   Z p;      ///< s (s + mass) / (1 + stiffness s)
-  Z share;  ///< s / (s + mass): of the deformation
+  Z share;  ///< s / (s + mass), factor of the deformation
   Z rest;   ///< mass / (s + mass) = 1 - share
 
   Point(const Z& s, const fe::Rayleigh& damping) {
@@ -40,8 +40,9 @@ struct Point {
   }
 };
 
-/// f between the ends and at the root, where the rigid motion is not damped: f(0) + share (f(q) -
-/// f(0)), with share q = -gain mu.
+/// A function f of the total motion: mass damping acts on the deformation alone, hence f(0) + share
+/// (f(q) - f(0)). Near rest by the slope of f, without a difference that cancels: share q = -gain
+/// mu.
 template <class Z>
 Z relative(const FromRest<Z>& f, const Point<Z>& at, const RealOf<Z>& mu) {
   if (detail::is_near_rest(Z(at.p * mu))) return Z(f.at_zero) - at.gain * Z(mu) * f.slope;
@@ -126,8 +127,8 @@ std::vector<MatrixXcd> as_doubles(Eigen::Matrix<Complex50, Eigen::Dynamic, Eigen
   return result;
 }
 
-/// A frequency below the first modes, at which no entry is small: omega = 1 / sqrt(mu) of the
-/// softer plane, a third of its first frequency.
+/// omega = 1 / sqrt(mu) of the softer plane, a third of its first frequency: no entry of Y is small
+/// there.
 double slow_frequency(const ExactBeam& b) {
   const double I = std::min(b.section.I_y, b.section.I_z);
   return std::sqrt(b.material.E * I / (b.material.rho * b.section.area)) / (b.length * b.length);

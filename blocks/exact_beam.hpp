@@ -6,9 +6,9 @@
 
 namespace titop {
 
-/// The beam that `Beam` divides into elements, undivided: uniform, Euler-Bernoulli bending in two
-/// planes, rod and shaft, from P at the origin to C at (length, 0, 0). Its partial differential
-/// equations are solved in closed form at every s, with all of its infinitely many modes:
+/// A uniform beam without elements: Euler-Bernoulli bending in two planes, rod and shaft, from P at
+/// the origin to C at (length, 0, 0), as `Beam`. Its partial differential equations are solved in
+/// closed form at every s, with all of its infinitely many modes:
 ///
 ///     m (s (s + mass) v + s^2 R x_P) + (1 + stiffness s) E I v'''' = 0
 ///
@@ -18,9 +18,9 @@ namespace titop {
 /// converges to it with more elements; a constant damping ratio of all modes has no closed form.
 ///
 /// Ports as of FlexibleBody{Beam{...}}: child "C" takes a wrench, parent an acceleration. It has no
-/// finite state space: `System::transfer` and `frequency_response` take it, in every precision;
+/// finite state space: `System::transfer` and `frequency_response` compute it, in every precision;
 /// `state_space`, `poles`, `simulate` and all that needs them throw not_rational. `with_elements`
-/// makes the finite body of it, `compare` (analysis/distributed) tells how far the two are apart.
+/// divides it into elements, `compare` (analysis/distributed) estimates the error of that.
 ///
 /// `add` throws bad_value, as check(Beam), and for damping < 0; transfer throws singular at a pole
 /// of the beam clamped at P. Cost at one s: some 10 us in double.
@@ -34,8 +34,8 @@ struct ExactBeam {
 };
 BlockPtr as_block(const ExactBeam& beam);
 
-/// The same beam divided into elements of equal length, with the same damping. `modes`: which are
-/// kept, and residual vectors; not their damping.
+/// The same beam divided into elements of equal length, with the same damping. `modes`: number of
+/// modes and residual vectors; its damping is not used.
 Beam with_elements(const ExactBeam& beam, int elements, fe::ModeOptions modes = {});
 
 }  // namespace titop

@@ -9,6 +9,7 @@
 #include <titop/analysis/reduction/phase_grid.hpp>
 #include <titop/graph/closed_form.hpp>
 #include <titop/graph/support/parallel.hpp>
+#include <titop/graph/support/some_names.hpp>
 
 namespace titop {
 namespace {
@@ -21,7 +22,8 @@ using Eigen::MatrixXd;
 constexpr int kFar = 10;         ///< pairs of poles in place of all beyond twice the band
 constexpr double kStart = 1e-6;  ///< of the band's upper end, in place of lower frequencies
 
-/// Frequencies of the band at which two models with poles like these can differ most.
+/// Frequencies of the band between which the phase of these poles, each counted twice, turns by
+/// kPhase at most.
 std::vector<double> points(const Scene& scene, const std::vector<Complex>& poles) {
   const double high = 2 * std::numbers::pi * scene.band_hz[1];
   const double low = std::max(2 * std::numbers::pi * scene.band_hz[0], kStart * high);
@@ -44,8 +46,10 @@ void require_same(const std::vector<std::string>& finite, const std::vector<std:
                   const char* subject) {
   if (finite != exact)
     throw Error(Code::bad_value,
-                fmt::format("the finite model has {} {}, the exact one {}, or others",
-                            finite.size(), subject, exact.size()),
+                fmt::format("the finite model and the exact one have different {}: {} ({}) and {} "
+                            "({})",
+                            subject, finite.size(), detail::some_names(finite), exact.size(),
+                            detail::some_names(exact)),
                 "compare models of the same scene, with the same inputs and outputs");
 }
 

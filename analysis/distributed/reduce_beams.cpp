@@ -28,8 +28,8 @@ const ExactBeam* exact_beam(const Block& block) {
   return spec ? &spec->spec() : nullptr;
 }
 
-/// Elements of the softer plane for a bending wave at omega: (k h)^4 / 720 is the error of its
-/// omega^2.
+/// Number of elements with which a bending wave of the softer plane at omega has this relative
+/// error of omega^2, (k h)^4 / 720.
 double elements_for(const ExactBeam& b, double omega, double error) {
   const double I = std::min(b.section.I_y, b.section.I_z);
   const double wave =
@@ -37,7 +37,7 @@ double elements_for(const ExactBeam& b, double omega, double error) {
   return wave * b.length / std::pow(720 * error, 0.25);
 }
 
-/// The scene's graph with finite beams, so many times finer than the first guess.
+/// The scene's graph with finite beams, `finer` times finer than the first mesh.
 class FiniteScene {
  public:
   FiniteScene(const Graph& exact, const Scene& scene) : exact_(exact), scene_(scene) {}

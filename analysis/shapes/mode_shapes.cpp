@@ -86,7 +86,7 @@ std::vector<Index> rows_of_points(const System& system, const std::vector<Placed
   return rows;
 }
 
-/// Of a circle around s that contains those poles that are equal to it, and no other.
+/// Radius of a circle around s that contains the poles that are equal to it, and no other.
 double radius_around(Complex s, const std::vector<Pole>& poles) {
   std::vector<double> distances;
   for (const Pole& p : poles) {
@@ -183,15 +183,15 @@ Mistake without_shape(const Pole& p, const char* why, const char* way_out) {
 }
 
 /// Adds the shape to `modes`, or the reason why there is none to `without`.
-void add_shape(const PointMotions& points, const std::vector<Pole>& poles, int place,
+void add_shape(const PointMotions& points, const std::vector<Pole>& poles, int index,
                std::vector<ModeShape>& modes, std::vector<Mistake>& without) {
-  const Pole& pole = poles[at(place)];
+  const Pole& pole = poles[at(index)];
   if (pole.omega == 0)
     return without.push_back(
         without_shape(pole, "its motion is rigid", "take a pole of an elastic mode"));
   const PoleResidue residue = points.residue(pole.s);
   Index before = 0;  // equal poles that come first in the list
-  for (int i = 0; i < place; ++i) before += std::abs(poles[at(i)].s - pole.s) < residue.radius;
+  for (int i = 0; i < index; ++i) before += std::abs(poles[at(i)].s - pole.s) < residue.radius;
   const Eigen::JacobiSVD<MatrixXcd> svd(residue.motion, Eigen::ComputeThinU);
   const double negligible = linalg::kHalfDigits * residue.around;
   if (before >= svd.singularValues().size() || svd.singularValues()(before) <= negligible)
@@ -199,7 +199,7 @@ void add_shape(const PointMotions& points, const std::vector<Pole>& poles, int p
         without_shape(pole, "no input moves a point in it",
                       "add an input that excites it; modes of controllers move no point"));
   modes.push_back(normalized(svd.matrixU().col(before)));
-  modes.back().place = place;
+  modes.back().index = index;
   modes.back().pole = pole;
 }
 
@@ -227,10 +227,10 @@ std::vector<std::pair<int, int>> lines_of(const Graph& g, const std::vector<Plac
 
 ModeShapes mode_shapes(const System& system, std::span<const int> wanted) {
   const std::vector<Pole> poles = system.poles();
-  for (const int place : wanted)
-    if (place < 0 || place >= std::ssize(poles))
+  for (const int index : wanted)
+    if (index < 0 || index >= std::ssize(poles))
       throw Error(
-          Code::unknown_name, fmt::format("there is no pole {}", place),
+          Code::unknown_name, fmt::format("there is no pole {}", index),
           fmt::format("{} has {} poles, counted from 0", system.stage().graph.name, poles.size()));
   const PointMotions motions(system);
   const std::vector<PlacedPoint>& points = motions.places().points;
@@ -244,7 +244,7 @@ ModeShapes mode_shapes(const System& system, std::span<const int> wanted) {
   result.lines = lines_of(motions.graph(), points, motions.values());
   result.notes = motions.places().notes;
   std::vector<Mistake> without;
-  for (const int place : wanted) add_shape(motions, poles, place, result.modes, without);
+  for (const int index : wanted) add_shape(motions, poles, index, result.modes, without);
   if (result.modes.empty() && !without.empty()) throw Error(std::move(without));
   for (const Mistake& m : without) result.without.push_back(m.message);
   return result;

@@ -8,7 +8,7 @@
 /// The processes of one MPI run (CMake option TITOP_MPI); without MPI, or without mpirun, one.
 namespace titop::command_line {
 
-/// Between construction and destruction MPI is in use; once in a program.
+/// The constructor initialises MPI, the destructor finalises it: one object per program.
 class Ranks {
  public:
   Ranks();
@@ -18,13 +18,13 @@ class Ranks {
 
   /// True for the process that writes results and errors.
   bool first() const { return rank_ == 0; }
-  /// First and one past the last of these rows that this process has: in the order of the ranks.
+  /// The rows of this process, from .first up to but without .second, in the order of the ranks.
   std::pair<std::size_t, std::size_t> part(std::size_t begin, std::size_t end) const;
   /// The texts of all processes one after the other, at the first one; empty at the others. All
   /// processes must call it.
   std::string joined(const std::string& own) const;
-  /// For an error that the others may not have: prints it and ends all processes with exit code 1;
-  /// does nothing if this is the only one.
+  /// For an error that other processes may not have: prints it and ends all processes with exit
+  /// code 1; does nothing if there is one process.
   void abort(const char* error) const;
 
  private:

@@ -15,8 +15,9 @@ namespace titop::fe {
 ///
 /// Cards are in fields of 8 or 16 columns or separated by commas, with continuations. Coordinate
 /// systems are CORD1R, CORD1C, CORD1S, by grids, and CORD2R, CORD2C, CORD2S, by points, also
-/// relative to others. A grid that moves in a cylindrical or spherical system has the frame of its
-/// coordinates' directions there, on the system's axis its x, y, z. In the data's unit of length.
+/// relative to others. The displacement frame of a grid in a cylindrical or spherical system has
+/// the directions of r, theta, z, or r, theta, phi, at the grid; on the system's axis those of its
+/// x, y, z. Positions are in the data's unit of length.
 ///
 /// Throws bad_file, all mistakes together, with file and line: a field that is no number, a grid or
 /// a coordinate system twice with different data, a coordinate system that is not there, refers to

@@ -10,11 +10,12 @@
 /// Coordinate systems of Nastran. For the folder's own files.
 namespace titop::fe::detail {
 
-/// Coordinates of a point: x, y, z; r, theta, z; r, theta from z, phi. Angles in degrees.
+/// Coordinates of a point: x, y, z; or r, theta, z; or r, theta (from the z axis), phi. Angles are
+/// in degrees.
 enum class SystemKind { rectangular, cylindrical, spherical };
 
-/// CORD2R, CORD2C, CORD2S: A the origin, B on z, C in the x-z plane. CORD1R, CORD1C, CORD1S: grids
-/// there.
+/// CORD2R, CORD2C, CORD2S: `points` A (the origin), B (on the z axis) and C (in the x-z plane).
+/// CORD1R, CORD1C, CORD1S: `grids` at these three points.
 struct SystemCard {
   SystemKind kind = SystemKind::rectangular;
   int in = 0;                           ///< the system of the points' coordinates
@@ -22,25 +23,25 @@ struct SystemCard {
   std::optional<std::array<int, 3>> grids = {};
 };
 
-/// GRID.
+/// A card GRID.
 struct GridCard {
   int in = 0;  ///< the system of its coordinates
   Vector3d point = Vector3d::Zero();
   int moves = 0;  ///< the system of its displacements
 };
 
-/// Grids and the systems that they refer to; 0 is the basic system. Of a cylindrical or spherical
-/// system the displacement frame of a grid has the directions of its coordinates there, on the axis
-/// z x, y, z.
+/// Grids and the systems that they refer to; 0 is the basic system. The displacement frame of a
+/// grid in a cylindrical or spherical system has the directions of its coordinates at the grid, and
+/// those of the system's x, y, z on the z axis.
 class CoordinateSystems {
  public:
   std::map<int, SystemCard> systems;
   std::map<int, GridCard> grids;
   std::map<int, std::string> others;  ///< names of cards of other kinds, "CORD3G"
 
-  /// Nothing, and the reason in `why`, for a grid or a system that is not there, a system of
-  /// another kind, that refers to itself or over more than 1000 others to the basic one, or whose
-  /// points are on a line.
+  /// Position and displacement frame of the grid. None, with the reason in `why`, if the grid or a
+  /// system is missing, is of another kind, refers to itself, or to the basic one through more than
+  /// 1000 others, or if its three points are on a line.
   std::optional<Grid> place(int id, std::string& why);
 
  private:

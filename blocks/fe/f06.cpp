@@ -188,7 +188,7 @@ F06File read_f06(const std::filesystem::path& path) {
 std::vector<Grid> f06_grids(const F06File& file) {
   if (file.bulk.empty())
     refuse(
-        file, "it does not say where its grids are",
+        file, "it has no positions of its grids",
         "give its bulk data (ImportOptions::grids; titop import --grids FILE.bdf), or print them: "
         "ECHO=SORT in the case control");
   return detail::grids_in({file.name + ", bulk data echo", file.bulk, true});

@@ -35,7 +35,7 @@ struct F06File {
 /// Tables of one subcase, over any number of pages, with titles of any text. Eigenvalues before the
 /// augmentation by residual vectors are skipped, as are scalar points and all other tables.
 ///
-/// Throws bad_file, all mistakes together, with file and line: a row that is no row of its table, a
+/// Throws bad_file, all mistakes together, with file and line: a row that does not fit its table, a
 /// grid twice in a mode or missing in one, eigenvectors and forces of modes that the eigenvalues do
 /// not have, several subcases, a fatal message of the run.
 F06File read_f06(const std::filesystem::path& path);
@@ -44,12 +44,12 @@ F06File read_f06(const std::filesystem::path& path);
 /// and the errors of `read_grids`.
 std::vector<Grid> f06_grids(const F06File& file);
 
-/// Modal data of a body clamped at grid `parent` alone by the run itself, as `op2_modal_data` has
-/// them of an OP2. `grids`: positions and frames, of the bulk data. L_P is MODAL PARTICIPATION
-/// FACTORS, D_P the A-SET RIGID BODY MASS MATRIX, which leaves out the mass lumped at the clamped
-/// grid, or without it the matrix of the GRID POINT WEIGHT GENERATOR, which has it (in units of
-/// mass unless PARAM,WTMASS is given). Both are moved from their reference points to the parent.
-/// `digits`: 7, less those that this takes.
+/// Modal data of a body that the run has clamped at grid `parent` alone, like `op2_modal_data`.
+/// `grids`: positions and frames, from the bulk data. L_P is the table MODAL PARTICIPATION FACTORS.
+/// D_P is the A-SET RIGID BODY MASS MATRIX, without the mass lumped at the clamped grid; if the
+/// file does not have it, the matrix of the GRID POINT WEIGHT GENERATOR, with that mass (in units
+/// of mass unless PARAM,WTMASS is given). Both are moved from their reference points to the parent.
+/// `digits` is 7, less the digits that this move costs.
 ///
 /// Throws the errors of `op2_modal_data`; bad_file for effective masses that are not the squares of
 /// the participation factors.

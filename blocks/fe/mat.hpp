@@ -10,7 +10,7 @@ namespace titop::fe {
 /// All variables of a file, in its order, as `read_op4` gives those of an OP4, with form 0. Real
 /// matrices of doubles (15 digits) or singles (7), dense or sparse; others, and those of more than
 /// 25 million entries, are listed in `unread`. Names are in capitals, as `find_matrix` takes them:
-/// two that differ in small letters alone are one name, twice.
+/// two that differ only in case are one name, twice.
 ///
 /// Throws bad_file for other files, data that end early, entries that are no finite numbers; and if
 /// the library was built without libmatio.

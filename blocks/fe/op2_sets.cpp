@@ -4,7 +4,7 @@
 #include <titop/blocks/fe/op2_results.hpp>
 #include <titop/graph/error.hpp>
 
-/// op2_matrices: which row is which degree of freedom.
+/// op2_matrices: the degree of freedom of each row.
 namespace titop::fe {
 
 using Eigen::Index;

@@ -102,9 +102,8 @@ std::optional<solve::RowMatrix<T>> finer_outputs(const Factored& d, T s,
   return {};
 }
 
-/// C x + D u - y beyond the rounding of both: that of one product is negligible, entries of C and D
-/// that are not those of the factors are not. Where rounding of y may hide a difference above
-/// kWarn, y is that of finer arithmetic.
+/// C x + D u - y, as far as it exceeds the rounding of these sums; wrong entries of C and D exceed
+/// it. If rounding of y may hide a difference above kWarn, y is computed in finer arithmetic.
 solve::RowMatrix<T> off_by_outputs(const Factored& d, const StateSpace& m, T s,
                                    const solve::RowMatrix<T>& x, const solve::RowMatrix<T>& u,
                                    const solve::RowMatrix<T>& y, const MatrixXd& rounding,

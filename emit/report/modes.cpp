@@ -197,7 +197,7 @@ std::string figures_of(const ModeShapes& shapes) {
   std::string text = "<div class=\"figures\">\n";
   for (std::size_t i = 0; i < shapes.modes.size(); ++i) {
     Plot plot = mode_plot(shapes, i, {});
-    plot.title = fmt::format("pole {}: {}", shapes.modes[i].place + 1, plot.title);
+    plot.title = fmt::format("pole {}: {}", shapes.modes[i].index + 1, plot.title);
     text += figure(plot);
   }
   text += "</div>\n";

@@ -48,7 +48,7 @@ struct ModePlotOptions {
   double amplitude = 0.15;  ///< largest displacement as drawn, relative to the structure's size
 };
 
-/// The structure in a mode, given by its place in system.poles(): the ports of its bodies at rest
+/// The structure in a mode, given by its index in system.poles(): the ports of its bodies at rest
 /// and displaced (`mode_shapes`), lines between the ports of each body. The caption has frequency,
 /// damping, and the blocks without a position. Throws the errors of mode_shapes, and bad_value for
 /// options that are not finite or an amplitude that is not positive. Cost: that of mode_shapes.

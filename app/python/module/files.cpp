@@ -133,7 +133,7 @@ void bind_plots(py::module_& m) {
       "system"_a, "pole"_a, py::kw_only(), "title"_a = "", "azimuth"_a = ModePlotOptions{}.azimuth,
       "elevation"_a = ModePlotOptions{}.elevation, "amplitude"_a = ModePlotOptions{}.amplitude,
       Unlocked(),
-      "The structure in the mode of this place in system.poles(), as SVG: its points at rest and\n"
+      "The structure in the mode of this index in system.poles(), as SVG: its points at rest and\n"
       "displaced, seen from this direction [deg], the largest displacement relative to its size.");
 }
 
