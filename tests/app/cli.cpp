@@ -273,7 +273,7 @@ TEST_CASE("a scene that is refused: exit code 1 and the error on stderr") {
   CHECK(has_line(r.err, {"error[no-equation]", "z.parent"}));
 }
 
-TEST_CASE("who asks for help gets the usage on stdout") {
+TEST_CASE("--help prints the usage on stdout") {
   const Shell shell;
   for (const char* words : {"--help", "-h", "help", "certify --help", "generate --help"}) {
     INFO(words);

@@ -17,7 +17,7 @@ const std::string kOp4 = TITOP_DATA_DIR "/nastran_op4_superelement/outboard.op4"
 
 }  // namespace
 
-TEST_CASE("import: what is in the file, then a diagram of the body and its CSV") {
+TEST_CASE("import: the contents of the file, then a diagram of the body and its CSV") {
   const app_test::Shell shell;
   Run r = shell.titop("import " + kOp4 + " --units 1e-3 1 1");
   CHECK(r.code == 0);
@@ -77,7 +77,7 @@ TEST_CASE("import: a planar model takes the mass of the whole body") {
   CHECK(has_names(r.err, {"60", "6", "x, x", "ModeOptions::rigid"}));
 }
 
-TEST_CASE("import: what is not understood, and what is refused") {
+TEST_CASE("import: unknown options and refused files") {
   const app_test::Shell shell;
   CHECK(shell.titop("import " + kOp4 + " -o body.json").code == 2);  // no parent
   CHECK(shell.titop("import " + kOp4 + " --parent 3 -o body.txt").code == 2);

@@ -166,7 +166,7 @@ TEST_CASE("bushing: matrices that no spring has, by name") {
              Code::bad_value, {"iso", "stiffness", "-1", "x"}));
 }
 
-TEST_CASE("bushing: an end that nothing holds, a body without mass on it") {
+TEST_CASE("bushing: a free end, a body without mass on it") {
   Diagram d{"open"};
   auto iso = d.add("iso", Bushing{.stiffness = kK});
   ground(iso);

@@ -89,7 +89,7 @@ TEST_CASE("a scene's transfers in every precision, against all its equations at 
   CHECK(titop_test::noted(system, Note::Kind::warning, "check", {"lower"}));
 }
 
-TEST_CASE("what needs a state space is refused, and names the blocks") {
+TEST_CASE("results that need a state space are refused and name the blocks") {
   const Diagram d = arm();
   const System system = compile(d);
   const auto refused = [](auto f) {

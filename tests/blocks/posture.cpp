@@ -143,7 +143,7 @@ TEST_CASE("Bennett: a spatial loop that only its proportions let move") {
   }
 }
 
-TEST_CASE("a loop that cannot be closed says by how far") {
+TEST_CASE("a loop that cannot be closed is refused with the gap") {
   // Links of 1 m and 1 m between points 3 m apart.
   CHECK(says(error_of([] {
                posture({{.joint = about(z, "A"), .guess = 0.3, .link = {1, 0, 0}},

@@ -96,8 +96,7 @@ Diagram pinned(double angle) {
 
 }  // namespace
 
-TEST_CASE(
-    "forces on what is pinned: nothing moves along them, and that is passive and reciprocal") {
+TEST_CASE("forces on pinned points move nothing, which is passive and reciprocal") {
   for (int k = 1; k <= 12; ++k) {
     CAPTURE(k);
     const FullCertificate c = certify(compile(pinned(0.2 * k), {.minimize_up_to = 0}));
@@ -109,7 +108,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("along what joints hold there is rounding only: no energy, and no equation that fails") {
+TEST_CASE("along locked axes of joints rounding gains no energy and fails no equation") {
   for (int k = 1; k <= 12; ++k) {
     CAPTURE(k);
     const System free = compile(door(0.2 * k)), held = compile(braced(0.2 * k));

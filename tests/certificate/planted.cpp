@@ -34,7 +34,7 @@ TEST_CASE("random scenes: no fault; of planted ones each that changes the transf
 /// Structured Lti whose certificates have called right models faulty: outputs that are 0 by
 /// structure (762, 1022) or because two states cancel (4736), states in far units (482, 1021), and
 /// states that were put back (1256, 1922, 3262, 3264, 3697, 4907).
-TEST_CASE("certificates of right Lti: zeros, far units, and what was put back are no faults") {
+TEST_CASE("certificates of right Lti: zeros, far units and restored entries are no faults") {
   for (const std::uint64_t seed :
        {482U, 762U, 1021U, 1022U, 1256U, 1922U, 3262U, 3264U, 3697U, 4736U, 4907U})
     for (const bool units : {false, true}) {

@@ -309,7 +309,7 @@ TEST_CASE("forces wherever they may act on a structure: every sign and part of a
   }
 }
 
-TEST_CASE("forces that a closed chain holds: their rounding is no asymmetry, in whatever units") {
+TEST_CASE("internal forces of a closed chain: their rounding is no asymmetry, in any units") {
   // A parallelogram of links of length 1 in an oblique plane, pushed in it and across it.
   const Matrix3d T = Eigen::AngleAxisd(0.8, Vector3d(3, -1, 2).normalized()).matrix();
   const Vector3d x = T.col(0), y = T.col(1), z = T.col(2);

@@ -213,7 +213,7 @@ TEST_CASE("a pure gain and a lag with a direct term") {
   CHECK(std::abs(l.nearest.value - 0.5) <= kClose);
 }
 
-TEST_CASE("unstable loops have no margins, and say so") {
+TEST_CASE("unstable loops have no margins, and the text reports it") {
   const Margins m = margins(ratio({60}, {1, 3, 2, 0}));  // limit 6
   CHECK(!m.stable);
   CHECK(m.nyquist.closed_right == 2);

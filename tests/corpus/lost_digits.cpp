@@ -11,7 +11,7 @@
 using titop::OrderVerdict;
 using titop_test::Folder;
 
-TEST_CASE("where digits are lost, rounding decides no order: the interval holds the exact one") {
+TEST_CASE("where digits are lost the interval of the order contains the exact one") {
   // Some ports of these are at rounding level and, judged by their own size, move and see all. If
   // their equations prove it, they count as 0, otherwise the order is in doubt.
   int doubted = 0;

@@ -125,7 +125,7 @@ double worst_damping(const System& system, int count) {
 /// {{0.003}} is one damping ratio, and no row of a frequency without a ratio.
 static_assert(!std::is_constructible_v<DampingPoint, double>);
 
-TEST_CASE("a boom of one mode with 12 kg on its tip: the assembly has what the report says") {
+TEST_CASE("a boom of one mode with 12 kg on its tip: the assembly has the prescribed damping") {
   // Bending along y: the tip moves by phi per modal coordinate, so that the modal mass is 1 + 12
   // phi^2 = 36 and xi = 0.3 % of the clamped boom is 0.05 % in the assembly.
   const double omega = 10.8, phi = std::sqrt(35.0 / 12), xi = 0.003;

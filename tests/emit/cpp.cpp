@@ -163,7 +163,7 @@ TEST_CASE("free rigid motion has no modes: the model's own states, or a refusal"
                 {"cart", "CppStates::automatic"}));
 }
 
-TEST_CASE("without inputs or outputs nothing was measured, and the header says so") {
+TEST_CASE("without inputs or outputs nothing is measured, and the header states it") {
   Diagram d{"just modes"};
   ground(d.add("z", SpringMass{.mass = 1, .stiffness = 4}));
   const System system = compile(d);
@@ -172,7 +172,7 @@ TEST_CASE("without inputs or outputs nothing was measured, and the header says s
   CHECK(refused(system, {.name = "z", .states = CppStates::modes}, {"z", "CppStates::automatic"}));
 }
 
-TEST_CASE("an output is silent where all points say so, not one") {
+TEST_CASE("an output is silent if it is so at all points, not at one") {
   // The relative acceleration over a spring of 1e10 rad/s is (omega / 1e10)^2 of the motion: lost
   // in rounding at the slow points, all there is at the fast ones.
   Diagram d{"stiff"};

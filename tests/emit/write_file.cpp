@@ -10,7 +10,7 @@
 using namespace titop;
 using titop_test::Folder;
 
-TEST_CASE("a file is replaced whole; one that says the same is left alone") {
+TEST_CASE("a file is replaced as a whole; one of the same content keeps its time") {
   const Folder folder;
   const auto file = folder.path / "a.txt";
   emit::write_file(file, "one");

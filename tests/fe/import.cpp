@@ -162,7 +162,7 @@ TEST_CASE("a scalar point with the number of a grid is not that grid") {
   CHECK(found.ports == std::vector<std::string>{"1", "2"});
 }
 
-TEST_CASE("other files are refused with what to ask of the program") {
+TEST_CASE("other files are refused with the output to request from the program") {
   check_refused([&] { fe::import_body(kData + "/nastran_cantilever/pn_mwe_s-solution_1.dat"); },
                 Code::bad_file, {"pn_mwe_s-solution_1.dat", "EXTSEOUT"});
   const titop_test::Folder folder;

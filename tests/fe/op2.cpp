@@ -240,7 +240,7 @@ TEST_CASE("runs whose results are no clamped modes of mass 1 are refused") {
   refused({.mode = 2}, Code::bad_file, {"OUGV1", "mode 2", "LAMA"});
 }
 
-TEST_CASE("what is missing is named, with the line that writes it") {
+TEST_CASE("a missing table is named with the line that writes it") {
   Op2Writer w({});
   w.matrix("KAA", MatrixXd::Identity(2, 2), 2);
   w.end();

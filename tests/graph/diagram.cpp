@@ -212,7 +212,7 @@ TEST_CASE("positions of bodies follow their mounting") {
   CHECK(matrix_error(m.C.topRows(6), m.C.bottomRows(6)) <= 1e-15);
 }
 
-TEST_CASE("positions and rates that no state holds are integrated, and only those") {
+TEST_CASE("positions and rates that no state determines are integrated, and only those") {
   Diagram d{"free"};
   auto u = d.input("u");
   auto z1 = d.add("z1", SpringMass{.mass = 2, .stiffness = 26, .parent_mass = 1});

@@ -55,8 +55,7 @@ TEST_CASE("a multiple of a parameter is multiplied, divided and negated like a n
   CHECK((0.5 * Value(p)).at(five) == 2.5);
 }
 
-TEST_CASE(
-    "an acceleration driven twice: a second point closes a chain, by weld as the error says") {
+TEST_CASE("an acceleration driven twice: the error suggests weld, which closes a chain") {
   Diagram d{"held twice"};
   auto base = d.add("base", RigidBody{.children = {{"C1"}, {"C2", {1, 0, 0}}}});
   ground(base);

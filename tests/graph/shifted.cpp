@@ -144,7 +144,7 @@ TEST_CASE("an Lti of many states has the transfer of its matrices") {
   }
 }
 
-TEST_CASE("C (s - A)^-1 B + D in residuals of 64 bits: a thousandth of what the data allow") {
+TEST_CASE("C (s - A)^-1 B + D in residuals of 64 bits: a thousandth of the data's own error") {
   double largest = 0;
   for (const Index n : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 40})
     for (int kind = 0; kind < 4; ++kind) {

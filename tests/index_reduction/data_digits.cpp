@@ -111,7 +111,7 @@ TEST_CASE("data digits: a parent freed in each of the 63 sets of directions") {
   CHECK(refused == 2 * (63 + 32 + 32));
 }
 
-TEST_CASE("data digits: freed by joints, along oblique axes, through what has no mass") {
+TEST_CASE("data digits: freed by joints, along oblique axes, through points without mass") {
   const FlexibleBody body{bare(7)};
   const Vector3d axis{1, 2, 3};
   const auto scene = [&](auto hang) {

@@ -229,7 +229,7 @@ TEST_CASE("a loop in which rounding stands in a front of its own is refused") {
   CHECK(says(e, Code::ill_posed, {}));
 }
 
-TEST_CASE("where double cannot say which rows depend, the loop itself is named, and the way out") {
+TEST_CASE("if double does not decide which rows depend, the error names the loop and the way out") {
   // Row 1 is -2.5 row 0 - 4.5 row 3, exactly: 50 digits detect it, but with the zero threshold of
   // null_rows double finds a pivot in every front.
   MatrixXd L{{64, 44, 60, 60}, {0, 0, 0, 0}, {-28, 0, 64, 48}, {-8, 48, 0, 64}};

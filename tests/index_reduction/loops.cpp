@@ -197,7 +197,7 @@ TEST_CASE("1000 random graphs without: none is refused, and the answer is that o
   CHECK(worst <= 1e-12);
 }
 
-TEST_CASE("1 + d k = delta: solved with the digits that it says, down to one; refused at 0") {
+TEST_CASE("1 + d k = delta: solved with the digits of its estimate, down to one; refused at 0") {
   const auto ring = [](double delta) {
     Diagram d{"ring"};
     auto u = d.input("u");

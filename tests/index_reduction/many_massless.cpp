@@ -114,7 +114,8 @@ TEST_CASE("massless: a long row with a massless point at every mass, against lin
     CHECK(relative(system.transfer(s)(0, 0), by_links(kCount, s)) <= 1e-12);
 }
 
-TEST_CASE("massless: an update compiles again, says why, and is a fresh compile to the last bit") {
+TEST_CASE(
+    "massless: an update compiles again, with the reason, as a fresh compile to the last bit") {
   const auto scene = [](double last) {
     Diagram d{"series"};
     auto u = d.input("u");

@@ -10,7 +10,7 @@
 using namespace index_reduction_test;
 using namespace titop;
 
-TEST_CASE("400 random networks with points without mass: transfer and order as M, D and K say") {
+TEST_CASE("400 random networks with points without mass: transfer and order as by M, D and K") {
   const std::vector<Complex> points = {{0.3, 0.7}, {0.5, 3}, {1, 9}, {0.2, 25}};
   double factored = 0, dense = 0, residual = 0;
   int reduced = 0;

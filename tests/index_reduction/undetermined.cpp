@@ -196,7 +196,7 @@ TEST_CASE("a massless strut between ball joints: its rotation about itself is no
   }
 }
 
-TEST_CASE("the full certificate finds no fault, and apply says the same as the dense model") {
+TEST_CASE("the full certificate finds no fault, and apply equals the dense model") {
   const System system = compile(Stand{}.diagram());
   const FullCertificate c = certify(system);
   CAPTURE(to_string(c));

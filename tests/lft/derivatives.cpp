@@ -131,7 +131,7 @@ TEST_CASE("equal poles split by the eigenvalues of a small matrix") {
   CHECK(std::abs(slopes(1) - std::complex<double>(0, 3.0 / (2 * 18))) <= 1e-14);
 }
 
-TEST_CASE("what has no derivative is refused or marked") {
+TEST_CASE("parameters without a derivative are refused or marked") {
   Diagram d{"free"};
   auto z = d.add("z", SpringMass{.mass = d.param("m", 2), .stiffness = 4, .parent_mass = 1});
   z.parent.force = -d.input("u");

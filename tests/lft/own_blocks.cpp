@@ -119,7 +119,8 @@ BlockPtr as_block(const Reach& spec) { return std::make_shared<ReachBlock>(spec)
 
 }  // namespace
 
-TEST_CASE("an own block in a loop: derivative in closed form, and what it is said to be") {
+TEST_CASE(
+    "an own block in a loop: derivative in closed form, with a note that it is by differences") {
   Diagram d{"own"};
   const Param p = d.param("p", 0.7), k = d.param("k", 0.4);
   auto c = d.add("c", Curved{2 * p});
@@ -250,7 +251,7 @@ System with_lever(bool opens, bool moves) {
 
 }  // namespace
 
-TEST_CASE("an own block whose points move says how, or is refused") {
+TEST_CASE("an own block that moves points by a parameter is refused unless it opens the motion") {
   for (const bool opens : {false, true}) {
     CAPTURE(opens);
     const System system = with_lever(opens, false);

@@ -173,7 +173,7 @@ TEST_CASE("the tilt of a body") {
   check_one(tilted(on_axis, {1, 0, 0}, 1), most, 4);
 }
 
-TEST_CASE("a boom of circular section turned about its own axis: what a turning one needs") {
+TEST_CASE("a boom of circular section turned about its own axis: occurrences of the angle") {
   ModalData data;
   data.omega = Eigen::Vector2d(2, 2);
   data.xi = Eigen::Vector2d(0.01, 0.01);

@@ -97,7 +97,7 @@ TEST_CASE("the satellite's peak in a band against differences of the norm") {
   }
 }
 
-TEST_CASE("a peak without a derivative is refused with both of what is equal") {
+TEST_CASE("a peak without a derivative is refused with both equal values") {
   using titop_test::error_of;
   const auto says = [](const Error& error, Code code, std::initializer_list<const char*> digits) {
     return error.has(code) && std::ranges::all_of(digits, [&](const char* d) {

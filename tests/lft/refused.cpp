@@ -186,7 +186,7 @@ TEST_CASE("two values at one place of an Lti") {
   CHECK_NOTHROW(as_block(lti({{'A', 2, 1, p}, {'A', 1, 2, q}, {'B', 2, 1, p}})));
 }
 
-TEST_CASE("what is no rational function of its parameter is refused by name") {
+TEST_CASE("functions of a parameter that are not rational are refused by name") {
   Diagram d{"own"};
   const Param p = d.param("p", 0.5);
   auto u = d.input("u");

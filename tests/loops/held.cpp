@@ -94,7 +94,7 @@ TEST_CASE("the same bars left open move") {
   CHECK(G.block(2, 1, 3, 3).cwiseAbs().maxCoeff() >= 1e-3);
 }
 
-TEST_CASE("a hub of many points between two pins that are not parallel: what hangs there stands") {
+TEST_CASE("a hub of many points between two pins that are not parallel is immobile") {
   Diagram d{"hub"};
   RigidBody spec{.mass = 3};
   for (int k = 0; k < 9; ++k)
@@ -159,7 +159,8 @@ Diagram wedged(double tilt, bool welded) {
 
 }  // namespace
 
-TEST_CASE("springs along what a chain nearly lets move: as welded, within what its angles keep") {
+TEST_CASE(
+    "springs along motions that a chain nearly allows: as welded, to the digits of its angles") {
   // Far below all modes the factors of such a chain have no digit; the model is checked elsewhere,
   // and the log reports it.
   for (const double tilt : {1e-2, 1e-4, 1e-5, 1e-6}) {

@@ -31,7 +31,7 @@ MatrixXcd driven(const FrameByHand& h, const Constraints& constraints, Complex s
 
 }  // namespace
 
-TEST_CASE("random frames on a body that moves as an input says: as by M, D and K") {
+TEST_CASE("random frames on a body of prescribed motion: as by M, D and K") {
   int compared = 0, redundant = 0;
   for (int seed = 3000; seed < 3100; ++seed)
     for (const bool plane : {false, true}) {

@@ -157,7 +157,7 @@ TEST_CASE("scaled relations: the same whatever rows and columns are measured in,
   }
 }
 
-TEST_CASE("scaled relations: no spring, stiff or soft, has a say") {
+TEST_CASE("scaled relations: stiffnesses have no influence") {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -230,7 +230,7 @@ TEST_CASE("the number of dependent coordinates follows from geometry, their choi
     }
 }
 
-TEST_CASE("redundant directions and held columns: as singular values of all relations say") {
+TEST_CASE("redundant directions and fixed columns: as by singular values of all relations") {
   int repeated = 0, held = 0;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     CAPTURE(seed);
@@ -266,7 +266,7 @@ TEST_CASE("redundant directions and held columns: as singular values of all rela
   CHECK(held >= 100);
 }
 
-TEST_CASE("followers: as many as the rank says, and right in every motion that is left") {
+TEST_CASE("followers: as many as the rank, and right in every remaining motion") {
   int of_others = 0;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     CAPTURE(seed);

@@ -125,7 +125,7 @@ TEST_CASE("Jordan blocks beside integrators: poles that cannot be separated stay
   CHECK(blocks > 1000);
 }
 
-TEST_CASE("poles at 0 that drive others, beside integrators: nothing is lost, the interval holds") {
+TEST_CASE("poles at 0 that drive others, beside integrators: none is lost, the interval is right") {
   int poles = 0;
   for (int seed = 0; seed < 1000; ++seed) {
     CAPTURE(seed);

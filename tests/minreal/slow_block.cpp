@@ -128,7 +128,7 @@ Diagram with_heavy_end(double mass, double stiffness) {
 
 }  // namespace
 
-TEST_CASE("slow block: a model that is wrong at the modes of the assembly says so") {
+TEST_CASE("slow block: a model that is wrong at the modes of the assembly is reported") {
   int wrong = 0;
   for (const double mass : {1e3, 1e6, 1e8, 1e10})
     for (const double stiffness : {0.0, 1e-12, 1e-3}) {

@@ -80,7 +80,7 @@ TEST_CASE("update judges nothing, the dense model of the new values does: 6, 4 a
   CHECK(compile(d, {.minimize_up_to = 0}).update({{"k", 25}}).state_space().order() == 6);
 }
 
-TEST_CASE("a pair that differs by 1e-6 keeps its 6 states, and says how little they do") {
+TEST_CASE("a pair that differs by 1e-6 keeps its 6 states and reports their visibility") {
   const Minimized r = minimize(pair(25, 25 * (1 + 1e-6)));
   CHECK(r.model.order() == 6);
   CHECK(r.order.decided());

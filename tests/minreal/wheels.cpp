@@ -61,7 +61,8 @@ int zeros_by_momentum(const Wheels& w) {
   return w.count + axes + 2 * (3 - axes) + (w.friction > 0 ? 0 : idle);
 }
 
-TEST_CASE("wheels: poles of the whole model: at 0 what is conserved, none right of the axis") {
+TEST_CASE(
+    "wheels: poles of the whole model: at 0 those of conserved momenta, none right of the axis") {
   all_satellites([](const Wheels& wheels, const System& minimal) {
     const System whole = compile(satellite(wheels), {.minimize_up_to = 0});
     int zeros = 0, others = 0;

@@ -201,7 +201,7 @@ TEST_CASE("matrices that do not fit each other are refused") {
       titop_test::says(titop_test::error_of([&] { m.transfer(1.0); }), Code::size, {"B", "1 x 1"}));
 }
 
-TEST_CASE("what has no norm is refused") {
+TEST_CASE("models without a norm are refused") {
   using titop_test::error_of;
   using titop_test::says;
   const Error undamped = error_of([] { norm_hinf(one_mode(10, 0)); });

@@ -138,7 +138,7 @@ TEST_CASE("an input on a parent's force is noted with its sign on the body, and 
         }) == 0);
 }
 
-TEST_CASE("inputs and no output: the log says how to write one") {
+TEST_CASE("inputs and no output: the log shows how to write one") {
   Diagram d{"forgotten"};
   auto z = d.add("z", SpringMass{.mass = 2, .stiffness = 3});
   ground(z);

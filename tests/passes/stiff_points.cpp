@@ -49,7 +49,7 @@ std::string note(fe::ModeOptions modes, Hang hang) {
 
 }  // namespace
 
-TEST_CASE("a body on a point that the kept modes leave rigid: the log says where") {
+TEST_CASE("a body on a point that the kept modes leave rigid: the log names it") {
   // Four modes bend: in y with rz and in z with ry; along x and about x nothing moves.
   const auto mounted = [](Diagram& d, BodyHandle& b) { mount(d.add("load", load()), b.child); };
   const std::string said = note({.kept = 4}, mounted);

@@ -75,7 +75,7 @@ TEST_CASE("dense export: harmless where the bodies are alike") {
   CHECK(!warns(system));
 }
 
-TEST_CASE("dense export: what it costs at mass ratios is said, and so it is") {
+TEST_CASE("dense export: its error at mass ratios is reported, and is that error") {
   for (const double ratio : {1e6, 1e9, 1e12}) {
     const System system = chain(ratio);
     CHECK(system.certificate().dense_error < 0);

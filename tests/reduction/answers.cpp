@@ -87,7 +87,7 @@ TEST_CASE("a chain without a body that could lose modes is refused by its size a
   }
 }
 
-TEST_CASE("at a pole every form says so") {
+TEST_CASE("at a pole every form throws singular") {
   Diagram d{"free"};
   auto U = d.input("U");
   auto z = d.add("z", SpringMass{.mass = 1, .stiffness = 4, .parent_mass = 3});

@@ -185,7 +185,7 @@ TEST_CASE("an oscillation that grows counts as the two states that it is") {
   CHECK(beside(r, scene, {truth, {}}, 2000).bound <= 1);
 }
 
-TEST_CASE("states that are asked for are balanced whatever whole_up_to says of coordinates") {
+TEST_CASE("states that the scene requests are balanced whatever whole_up_to is") {
   const Held held;
   const titop::Scene scene{.band_hz = {0, 8},
                            .accuracy = 1e-2,
@@ -249,7 +249,7 @@ TEST_CASE("static gain only: no states but those on the axis") {
   CHECK(std::abs(r.state_space().D(0, 0) - 1) <= 1e-6);  // it goes to the right place
 }
 
-TEST_CASE("a balanced model is dense and modal, and says why it is no second-order model") {
+TEST_CASE("a balanced model is dense and modal, and states why it is no second-order model") {
   const Held held;
   const ReducedSystem r =
       compile(held.diagram(), titop::Scene{.band_hz = {0, 8}, .accuracy = 1e-3});

@@ -48,7 +48,7 @@ struct Chain {
 
 }  // namespace
 
-TEST_CASE("two integrators of one position hide a pole at 0: nothing of it is left beside 0 Hz") {
+TEST_CASE("two integrators of one position hide a pole at 0: no effect of it remains beside 0 Hz") {
   const double ki[] = {300, 120};
   const std::size_t act[] = {1, 4}, read = 3;
   for (const double c : {0.2, 0.0}) {

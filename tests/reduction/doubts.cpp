@@ -126,8 +126,7 @@ TEST_CASE("modal form: coupled modes with equal poles have none; the error names
   CHECK(what_if(chain.diagram(), scene, accuracies).size() == 1);
 }
 
-TEST_CASE(
-    "what_if refuses accuracies out of range, all together, and leaves out what rounding ends") {
+TEST_CASE("what_if refuses accuracies out of range, all together, and omits those below rounding") {
   const Diagram d = frame(slim_beam(4));
   const titop::Scene scene{.band_hz = {0, 60}};
   const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -143,7 +143,7 @@ TEST_CASE("an output's unit does not matter, however far from the other's") {
   }
 }
 
-TEST_CASE("inputs and outputs with nothing between them have no error, and no say") {
+TEST_CASE("inputs and outputs with nothing between them have no error and no influence") {
   const Masses c{
       .m = {1, 2}, .k = {100, 300}, .on = {-1, -1}, .driven = {0, 1}, .read = {{0, 1}, {1, 1}}};
   const titop::Scene scene{.band_hz = {0.1, 3}, .accuracy = 1e-8};

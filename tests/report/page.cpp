@@ -63,7 +63,7 @@ void check_self_contained(const std::string& page) {
 
 }  // namespace
 
-TEST_CASE("the page is well formed, holds every section, and needs nothing from elsewhere") {
+TEST_CASE("the page is well formed, has every section, and needs nothing from elsewhere") {
   if (dot_is_missing()) return titop_test::skip("dot (Graphviz) is not installed");
   const std::string page = report_html(five_masses());
   CHECK(complaint(page) == "");
@@ -137,7 +137,7 @@ TEST_CASE("removed states, with the reason: twin masses swing against each other
   CHECK(rows[0][4] != "");
 }
 
-TEST_CASE("the certificate says whether forces are reciprocal, and why nothing asks for it") {
+TEST_CASE("the certificate states whether forces are reciprocal, or why that is not checked") {
   const auto certificate = [](bool pushed_by_filter) {
     Diagram d{"two"};
     auto a = d.add("a", SpringMass{.mass = 1, .stiffness = 4});
@@ -225,7 +225,7 @@ TEST_CASE("scenes without inputs, outputs or states have a report") {
   CHECK(count(section(page, "time"), "<figure") == 0);
 }
 
-TEST_CASE("a start far outside of the rest is cut, and the caption says how far it goes") {
+TEST_CASE("a start far outside of the rest is cut, and the caption has its range") {
   Diagram d{"damped"};
   auto u = d.input("u");
   auto z = d.add("z", SpringMass{.mass = 1, .stiffness = 1, .damping = 100});
@@ -321,7 +321,7 @@ TEST_CASE("all passes stand in the table, with times that add up") {
   for (const auto& row : rows) CHECK(row[3] != "");
 }
 
-TEST_CASE("write_report writes it, and says where it cannot") {
+TEST_CASE("write_report writes the page, or throws with the path") {
   const Folder folder;
   const System system = five_masses();
   write_report(system, folder.path / "a report's name.html", kNoDiagrams);

@@ -269,7 +269,7 @@ BlockPtr as_block(const SilentSpec&) { return std::make_shared<Silent>(); }
 
 }  // namespace
 
-TEST_CASE("blocks without positions are named, and what is behind them is placed by itself") {
+TEST_CASE("blocks without positions are named, and points behind them begin at their own origin") {
   Diagram d{"broken"};
   auto u = d.input("push");
   auto base = d.add("base", Bushing{.stiffness = {9, 9, 9, 9, 9, 9}});

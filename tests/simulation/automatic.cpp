@@ -51,7 +51,7 @@ System heavy_on_light(double heavy) {
   return compile(d);
 }
 
-TEST_CASE("where A has lost the digits of slow motion, the exact step says so, and is not chosen") {
+TEST_CASE("if A has lost the digits of slow motion, the exact step reports it and is not chosen") {
   const double heavy = 1e16, soft = 1 / (1 / 1e6 + 1 / 2e6), slow = std::sqrt(soft / heavy);
   const System s = heavy_on_light(heavy);
   const Excitation push = Excitation::step(Eigen::VectorXd::Ones(1));

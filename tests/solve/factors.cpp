@@ -192,7 +192,7 @@ TEST_CASE("solver: the distance from singular shows in the weakest pivot") {
 
 // Rows 1 and 2 are dependent up to their last digits: the remainder of row 2 is noise, and the
 // front that receives it has no other entry to show that.
-TEST_CASE("solver: a row of which only rounding is left does not pass for a good one further up") {
+TEST_CASE("solver: a row that is rounding alone does not pass for a good one further up") {
   System s;
   for (int i = 0; i < 4; ++i) s.structure.add_variable(1);
   for (const std::vector<int>& over :

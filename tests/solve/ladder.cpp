@@ -154,7 +154,8 @@ std::optional<double> answer(const System& system, Precision precision) {
 
 }  // namespace
 
-TEST_CASE("precision: refinement in 32 digits gives all of double, or says that none is left") {
+TEST_CASE(
+    "precision: refinement in 32 digits gives all of double, or reports that no digit remains") {
   int right = 0, lost_in_double = 0, refused = 0, refused_here = 0;
   for (int k = 20; k <= 50; k += 2)
     for (int j = 1; j <= 4; ++j) {

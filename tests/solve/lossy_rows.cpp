@@ -41,7 +41,7 @@ TEST_CASE("lossy rows: of two thousand masses") {
   CHECK(count.refused == 0);
 }
 
-TEST_CASE("lossy rows: every precision is right or says that it is not") {
+TEST_CASE("lossy rows: every precision is right, none is refused") {
   Count count;
   const LossyRow row = row_of(150);
   const System system = compile(row.diagram());

@@ -69,7 +69,7 @@ TEST_CASE("low: the acceleration on a stiff spring, far below its frequency, in 
     }
 }
 
-TEST_CASE("low: so it is no rounding that excuses a difference") {
+TEST_CASE("low: rounding does not excuse a difference") {
   const System system = compile(on_the_wall({.mass = 3, .stiffness = 7e5}, 0.5));
   for (const double omega : {1.0, 1e-3, 1e-6}) {
     const std::complex<double> s(0, omega);

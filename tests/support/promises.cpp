@@ -86,7 +86,7 @@ void demand_split(const Stage& stage) {
   spread(g, seen);
   for (std::size_t s = 0; s < g.signals.size(); ++s)
     demand(g.signals[s].role == Signal::Role::external || g.signals[s].active == (seen[s] != 0),
-           "set aside is what has no output: " + name_of(g, static_cast<int>(s)));
+           "a part without output is set aside: " + name_of(g, static_cast<int>(s)));
 }
 
 namespace {
