@@ -1,4 +1,4 @@
-# Installs what users include: titop.hpp and all that it includes, below `folder_of_headers`. The
+# Installs the headers for users: titop.hpp and all that it includes, below `folder_of_headers`. The
 # other headers are internal.
 cmake_policy(VERSION 3.25)
 cmake_path(ABSOLUTE_PATH folder_of_headers BASE_DIRECTORY "${CMAKE_INSTALL_PREFIX}")

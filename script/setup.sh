@@ -4,7 +4,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 mkdir -p build
 
-# What building, testing and drawing need.
+# Packages for building, testing and drawing.
 packages=(g++ cmake ninja-build ccache libeigen3-dev libboost-dev libfmt-dev doctest-dev
   nlohmann-json3-dev graphviz gnuplot-nox)
 

@@ -47,7 +47,7 @@ $2 + 0 == 0 {
 
 [[ -e large.csv ]] || exit 0
 awk -F, 'NR == 1 {
-  print "| bodies | coordinates | asked | after bodies | what that cost | states | bound | all of it |"
+  print "| bodies | coordinates | accuracy | coordinates after reduction of bodies | its error | states | bound | time |"
   print "|---|---|---|---|---|---|---|---|"
   next
 }

@@ -216,7 +216,7 @@ END {
   row("refactor", "D", 50, ""); row("refactor", "D", 200, ""); row("refactor", "A", 100000, "")
 
   print "\n## The step by effect (`minimize`), of the dense model that compile writes\n"
-  print "What compile above is timed without; it takes out what no input moves or no output sees.\n"
+  print "Minimization, which the times of compile above do not contain: it removes states that no input moves or no output sees.\n"
   print "| case | minimize | over compile |\n|---|---|---|"
   split("D F K A BL C", list, " ")
   for (i = 1; i <= 6; ++i) { minimize_row(list[i], 10); minimize_row(list[i], i < 4 ? 20 : 100) }

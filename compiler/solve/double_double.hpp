@@ -8,7 +8,7 @@
 #include <limits>
 
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__)
-#error "double-double is made of what rounding leaves: compile without -ffast-math"
+#error "double-double stores rounding errors: compile without -ffast-math"
 #endif
 
 namespace titop::solve {

@@ -3,8 +3,8 @@
 #   [FUNCTION function]         # its name, in the global namespace; NAME if left out
 #   [SAMPLE_TIME seconds]       # also `step`, exact for inputs held that long
 #   [STATES automatic|model|modes]
-#   [DATA file ...]             # what the sources read while they run: made again when it changes
-#   [LIBRARIES target ...])     # what the sources need besides titop
+#   [DATA file ...]             # files that the sources read while they run: made again when one changes
+#   [LIBRARIES target ...])     # libraries of the sources besides titop
 #
 # Compiles the diagram while your project is built and writes its model as C++17 (see
 # <titop/emit/cpp/cpp.hpp>). The target NAME is an interface library: link it and include

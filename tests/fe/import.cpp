@@ -1,5 +1,5 @@
-// A file of a finite-element program to a body in one call: each kind of file, what is told of it,
-// and what is refused with the way out.
+// A file of a finite-element program to a body in one call: each kind of file, the report of it,
+// and refusals with the way out.
 #include <doctest/doctest.h>
 
 #include <titop/titop.hpp>

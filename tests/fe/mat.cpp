@@ -1,5 +1,5 @@
 // MAT-files: bytes as MATLAB's description of version 5 has them, in both byte orders, dense and
-// sparse; an import of a pair of matrices; what is refused.
+// sparse; an import of a pair of matrices; refused files.
 #include <doctest/doctest.h>
 
 #include <array>

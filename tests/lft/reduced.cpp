@@ -7,7 +7,7 @@
 #include "support/mistakes.hpp"
 #include "support/rng.hpp"
 
-/// An Lft whose M is reduced: the error of M, and what it means for the closed model, by sampling.
+/// An Lft whose M is reduced: the error of M, and that of the closed model, by sampling.
 
 using namespace lft_test;
 using Eigen::MatrixXcd;

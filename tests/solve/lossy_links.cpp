@@ -17,7 +17,7 @@ void check(const LossyLinks& links) {
     CAPTURE(links.modes);
     CAPTURE(links.damping);
     CAPTURE(s);
-    // Wrenches across hinges pass without loss: the base's motion is what their terms leave.
+    // Wrenches across hinges pass without loss: the base's motion is the difference of their terms.
     const double share = links.joint == LossyLinks::Joint::hinge ? 1e-4 : 0;
     CHECK(titop_test::worst_block(system.transfer(s), links.exact(s), share) <= 1e-8);
   }

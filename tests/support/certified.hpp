@@ -11,7 +11,7 @@
 /// Certificates of right models, and of the same models with planted faults.
 namespace titop_test {
 
-/// Times 30 of what a certificate allows: it sees less at its own points than at 200.
+/// 30 times the error that a certificate allows: its own points show less than these 200.
 inline constexpr double kClearChange = 1e-5;
 
 struct FaultCount {

@@ -26,7 +26,7 @@ struct LossyRow {
   titop::Diagram diagram(const std::string& damping_name) const;
 };
 
-/// The four pairs of what is prescribed at the base and at the tip, with this length and damping.
+/// The four pairs of prescribed quantities at the base and the tip, with this length and damping.
 std::array<LossyRow, 4> lossy_rows(int n, double damping);
 
 /// Transfers of a row asked for, and how many of them were wrong or refused as singular.

@@ -1,4 +1,4 @@
-"""Equations as assignments to attributes: what they write, and what is refused."""
+"""Equations as assignments to attributes: the diagrams that they write, and refused ones."""
 import gc
 import json
 import sys

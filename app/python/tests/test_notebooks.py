@@ -1,4 +1,4 @@
-"""What notebooks show, and what other packages take."""
+"""Representations in notebooks, and conversions for other packages."""
 import shutil
 import sys
 import types

@@ -1,4 +1,4 @@
-"""What would be lost without a word is refused: comparisons in place of equations, writing into
+"""Statements without an effect are refused: comparisons in place of equations, writing into
 copies, half of a matrix, imaginary parts, models whose matrices do not fit."""
 import gc
 import pickle
@@ -142,7 +142,7 @@ class Numbers(Refusals):
 
 
 class Casts(Refusals):
-    """What a function cannot take: the TypeError tells what it expects, and what came."""
+    """Arguments of other types: the TypeError names the expected and the given one."""
 
     def test_of_blocks(self):
         self.refused(lambda: titop.RigidBody(inertia=3.0), "an inertia", "3 x 3", "3.0")

@@ -1,7 +1,6 @@
 """Types of the module titop. Values may be parameters where they are of type Value; matrices are
-NumPy arrays, and sequences of numbers may be lists. What functions do,
-        their units and frames: their
-docstrings."""
+NumPy arrays, and sequences of numbers may be lists. Docstrings describe functions, their units and
+frames."""
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from os import PathLike
 from typing import Any, Literal, NoReturn, TypeAlias, overload
