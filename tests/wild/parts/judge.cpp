@@ -245,87 +245,108 @@ double time_error(const Scene& scene, const std::vector<MatrixXcd>& transfer, co
   return worst / 1e-7;
 }
 
+/// A scene with its true transfers, and the errors that are allowed beside them.
+struct JudgedScene {
+  const Scene& scene;
+  Digits digits;
+  Truth exact;
+  Blocks blocks;
+};
+
+/// Allowed errors: the change of the transfer by the digits of the data. False if they are as large
+/// as the transfer itself.
+bool find_allowed(JudgedScene& c, unsigned seed, Judgement& j) {
+  const auto rows = output_blocks(c.scene), cols = input_blocks(c.scene);
+  const Truth off = truth(disturbed(c.scene, kData, seed + 1), j.s, c.digits);
+  const MatrixXd moved = off.H.empty()
+                             ? MatrixXd::Constant(static_cast<Index>(rows.size()),
+                                                  static_cast<Index>(cols.size()), HUGE_VAL)
+                             : largest(off.H, &c.exact.H, rows, cols);
+  Blocks& b = c.blocks = blocks_of(c.scene, c.exact.H, moved);
+  j.text = fmt::format("allowed {:.1e} of the largest", b.allowed.maxCoeff() / b.size.maxCoeff());
+  return (b.allowed.array() <= 1e-4 * b.size.maxCoeff()).all() && b.size.maxCoeff() > 0;
+}
+
+std::vector<Road> roads_of(const System& system, const std::vector<Complex>& points,
+                           Digits digits) {
+  return {{"transfer",
+           [&system, &points] {
+             Got got;
+             for (const Complex& s : points) got.H.push_back(system.transfer(s));
+             return got;
+           }},
+          {"apply",
+           [&system, &points, digits] { return of_model(through_apply(system), points, digits); }},
+          {"dense",
+           [&system, &points, digits] { return of_model(system.state_space(), points, digits); }}};
+}
+
+/// Takes the largest error of a road beside the allowed one, if it is larger than j.error, and its
+/// place.
+void compare(const JudgedScene& c, const Road& road, Judgement& j, std::string& place) {
+  const Blocks& b = c.blocks;
+  const Got got = road.transfer();
+  const MatrixXd error = largest(got.H, &c.exact.H, b.rows, b.cols);
+  MatrixXd allowed = b.allowed;
+  if (!got.rounding.empty()) allowed += largest(got.rounding, nullptr, b.rows, b.cols);
+  if ((error.array() > allowed.array()).any()) allowed += cancelled(c.scene, j.s, c.digits);
+  for (Index r = 0; r < error.rows(); ++r)
+    for (Index k = 0; k < error.cols(); ++k) {
+      if (error(r, k) <= j.error * allowed(r, k)) continue;
+      j.error = error(r, k) / allowed(r, k);
+      j.road = road.name;
+      place = fmt::format("block ({}, {}): off by {:.2e} of {:.2e}, allowed {:.1e}", r, k,
+                          error(r, k), b.size(r, k), allowed(r, k));
+    }
+}
+
+/// Likewise for a simulated step.
+void compare_in_time(const JudgedScene& c, const System& system, Judgement& j, std::string& place) {
+  const MatrixXd A = system.state_space().A;
+  const double fastest = std::max(A.size() > 0 ? A.eigenvalues().cwiseAbs().maxCoeff() : 1.0, 1e-3);
+  const double e = time_error(c.scene, c.exact.H, system, fastest);
+  if (e > 1) j.error = e, j.road = "simulate", place = fmt::format("off by {:.1e}", e * 1e-7);
+}
+
 Judgement judge_in(Digits digits, const Scene& scene, unsigned seed, bool with_time) {
   Judgement j;
   j.s = points_of(scene, seed);
-  const Truth exact = truth(scene, j.s, digits);
-  const auto rows = output_blocks(scene), cols = input_blocks(scene);
-  Blocks b;
-  if (exact.none.empty()) {
-    const Truth off = truth(disturbed(scene, kData, seed + 1), j.s, digits);
-    const MatrixXd moved = off.H.empty()
-                               ? MatrixXd::Constant(static_cast<Index>(rows.size()),
-                                                    static_cast<Index>(cols.size()), HUGE_VAL)
-                               : largest(off.H, &exact.H, rows, cols);
-    b = blocks_of(scene, exact.H, moved);
-    j.text = fmt::format("allowed {:.1e} of the largest", b.allowed.maxCoeff() / b.size.maxCoeff());
-    if (!(b.allowed.array() <= 1e-4 * b.size.maxCoeff()).all() || !(b.size.maxCoeff() > 0)) {
-      j.verdict = Verdict::not_judged;
-      return j;
-    }
+  JudgedScene c{scene, digits, truth(scene, j.s, digits), {}};
+  const bool exists = c.exact.none.empty();
+  if (exists && !find_allowed(c, seed, j)) {
+    j.verdict = Verdict::not_judged;
+    return j;
   }
   std::optional<System> system;
   try {
     system.emplace(titop::compile(diagram_of(scene)));
   } catch (const Error& e) {
     refuse(j, scene, e, "compile");
-    if (!exact.none.empty()) j.verdict = Verdict::refused_rightly;
+    if (!exists) j.verdict = Verdict::refused_rightly;
     return j;
   }
-  if (!exact.none.empty()) {
+  if (!exists) {
     j.verdict = Verdict::not_judged;
-    j.text = exact.none;
+    j.text = c.exact.none;
     return j;
   }
-  const std::vector<Road> roads = {
-      {"transfer",
-       [&] {
-         Got got;
-         for (const Complex& s : j.s) got.H.push_back(system->transfer(s));
-         return got;
-       }},
-      {"apply", [&] { return of_model(through_apply(*system), j.s, digits); }},
-      {"dense", [&] { return of_model(system->state_space(), j.s, digits); }}};
-  std::string at_road;
-  for (const Road& road : roads) {
-    try {
-      const Got got = road.transfer();
-      const MatrixXd error = largest(got.H, &exact.H, b.rows, b.cols);
-      MatrixXd allowed = b.allowed;
-      if (!got.rounding.empty()) allowed += largest(got.rounding, nullptr, b.rows, b.cols);
-      if ((error.array() > allowed.array()).any()) allowed += cancelled(scene, j.s, digits);
-      for (Index r = 0; r < error.rows(); ++r)
-        for (Index c = 0; c < error.cols(); ++c) {
-          if (error(r, c) <= j.error * allowed(r, c)) continue;
-          j.error = error(r, c) / allowed(r, c);
-          j.road = road.name;
-          at_road = fmt::format("block ({}, {}): off by {:.2e} of {:.2e}, allowed {:.1e}", r, c,
-                                error(r, c), b.size(r, c), allowed(r, c));
-        }
-    } catch (const Error& e) {
-      refuse(j, scene, e, road.name);
-      return j;
+  std::string road, place;
+  try {
+    for (const Road& r : roads_of(*system, j.s, digits)) {
+      road = r.name;
+      compare(c, r, j, place);
+      if (!(j.error <= 1)) break;
     }
-    if (!(j.error <= 1)) break;
-  }
-  if (j.error <= 1 && with_time && !scene.inputs.empty()) {
-    try {
-      const double fastest =
-          std::max(system->state_space().A.size() > 0
-                       ? system->state_space().A.eigenvalues().cwiseAbs().maxCoeff()
-                       : 1.0,
-                   1e-3);
-      const double e = time_error(scene, exact.H, *system, fastest);
-      if (e > 1) j.error = e, j.road = "simulate", at_road = fmt::format("off by {:.1e}", e * 1e-7);
-    } catch (const Error& e) {
-      refuse(j, scene, e, "simulate");
-      return j;
-    }
+    road = "simulate";
+    if (j.error <= 1 && with_time && !scene.inputs.empty()) compare_in_time(c, *system, j, place);
+  } catch (const Error& e) {
+    refuse(j, scene, e, road);
+    return j;
   }
   if (j.error <= 1) return j;
   const std::string doubt = said(*system);
   j.verdict = doubt.empty() ? Verdict::wrong_in_silence : Verdict::wrong_but_said;
-  j.text = at_road + (doubt.empty() ? "" : "; said: " + doubt);
+  j.text = place + (doubt.empty() ? "" : "; said: " + doubt);
   return j;
 }
 
