@@ -71,7 +71,7 @@ void write_lti(const Block& b, const WriteValue& value, const NameBody&, Json& j
                            {"value", value(e.value)}});
 }
 
-std::vector<Lti::Entry> read_entries(const JsonPlace& p, const ReadValue& value) {
+std::vector<Lti::Entry> read_lti_entries(const JsonPlace& p, const ReadValue& value) {
   std::vector<Lti::Entry> entries;
   for (std::size_t i = 0; p.has("values") && i < p.at("values").size(); ++i) {
     const JsonPlace e = p.at("values").item(i);
@@ -92,7 +92,7 @@ BlockPtr read_lti(const JsonPlace& p, const ReadValue& value, const FindBody&) {
                       .B = p.at("B").matrix(n, D.cols()),
                       .C = p.at("C").matrix(D.rows(), n),
                       .D = D,
-                      .values = read_entries(p, value)});
+                      .values = read_lti_entries(p, value)});
 }
 
 void write_integrator(const Block& b, const WriteValue&, const NameBody&, Json& j) {
