@@ -105,9 +105,9 @@ void check_passive(const SecondOrderModel& m) {
 
 }  // namespace
 
-TEST_CASE("500 random scenes: error below the bound, undamped poles on the axis, passive") {
+TEST_CASE("300 random scenes: error below the bound, undamped poles on the axis, passive") {
   int met = 0, near = 0;
-  for (std::uint64_t seed = 1; seed <= 500; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     CAPTURE(seed);
     const Random r = random_structure(seed);
     try {
@@ -128,6 +128,6 @@ TEST_CASE("500 random scenes: error below the bound, undamped poles on the axis,
       CHECK(error.has(Code::bad_value));
     }
   }
-  CHECK(met >= 490);
+  CHECK(met >= 294);
   CHECK(near >= 0.9 * met);  // the aim; two grids promise 1 / cos(1 / 2)^2 = 1.30
 }
