@@ -5,7 +5,7 @@
 #include <optional>
 #include <titop/blocks/fe/coordinate_systems.hpp>
 #include <titop/blocks/fe/op2_results.hpp>
-#include <titop/graph/error.hpp>
+#include <titop/blocks/fe/text_file.hpp>
 
 /// op2_grids: cards of GEOM1, each record a key of three words and entries of one length.
 namespace titop::fe {
@@ -29,10 +29,6 @@ std::optional<detail::SystemKind> system_kind(long long code) {
 }
 constexpr long long kGrid = 4501, kFirstByPoints = 2001;
 
-[[noreturn]] void refuse(const Op2File& file, const std::string& found, const char* hint) {
-  throw Error(Code::bad_file, fmt::format("{}: {}", file.name, found), hint);
-}
-
 /// Reads a record word by word. Double reals take two words of 4 bytes, or one of 8.
 class RecordReader {
  public:
@@ -44,7 +40,8 @@ class RecordReader {
     const double value = wide || file_.layout.word == 8
                              ? file_.layout.value<double>(take(8))
                              : static_cast<double>(file_.layout.value<float>(take(4)));
-    if (!std::isfinite(value)) refuse(file_, "GEOM1 has a coordinate that is no number", "");
+    if (!std::isfinite(value))
+      refuse_file(file_.name, "GEOM1 has a coordinate that is no number", "");
     return value;
   }
   Vector3d point(bool wide) {
@@ -55,7 +52,7 @@ class RecordReader {
  private:
   const char* take(std::size_t bytes) {
     if (bytes_.size() - at_ < bytes)
-      refuse(file_, "GEOM1 ends within an entry", "the file may be truncated");
+      refuse_file(file_.name, "GEOM1 ends within an entry", "the file may be truncated");
     at_ += bytes;
     return &bytes_[at_ - bytes];
   }
@@ -67,7 +64,7 @@ class RecordReader {
 
 int number(const Op2File& file, long long value) {
   if (value < -2'000'000'000 || value > 2'000'000'000)
-    refuse(file, fmt::format("GEOM1 has the number {}", value), "");
+    refuse_file(file.name, fmt::format("GEOM1 has the number {}", value), "");
   return static_cast<int>(value);
 }
 
@@ -78,8 +75,8 @@ bool is_wide(const Op2File& file, std::size_t words, std::size_t narrow, std::si
   if (file.layout.word == 8) return true;
   const bool fits = words % narrow == 0, fits_wide = words % (narrow + reals) == 0;
   if (!fits && !fits_wide)
-    refuse(file, fmt::format("GEOM1 has {} words of entries of {}", words, narrow),
-           "the file may be truncated");
+    refuse_file(file.name, fmt::format("GEOM1 has {} words of entries of {}", words, narrow),
+                "the file may be truncated");
   return fits_wide && !(fits && narrow_key);
 }
 
@@ -111,8 +108,13 @@ struct Geometry {
     card.in = number(file, entries.integer());
     card.point = entries.point(wide);
     card.moves = number(file, entries.integer());
-    entries.integer(), entries.integer();           // constraints, superelement
-    if (card.moves >= 0) systems.grids[id] = card;  // -1: a point of a fluid
+    entries.integer(), entries.integer();  // constraints, superelement
+    if (card.moves < 0) return;            // a point of a fluid
+    const auto [at, is_new] = systems.grids.insert({id, card});
+    if (!is_new && (at->second.in != card.in || at->second.point != card.point ||
+                    at->second.moves != card.moves))
+      refuse_file(file.name, fmt::format("GEOM1 has grid {} twice, with different data", id),
+                  "write the tables of one superelement");
   }
   void read_by_points(const Op2File& file, RecordReader& entries, detail::SystemKind kind,
                       bool wide) {
@@ -139,14 +141,15 @@ std::vector<Grid> op2_grids(const Op2File& file) {
     if (table.name == "GEOM1" || table.name == "GEOM1S" || table.name == "GEOM1N")
       for (std::size_t i = 1; i < table.records.size(); ++i) geometry.read(file, table.records[i]);
   if (geometry.systems.grids.empty())
-    refuse(file, "it has no table GEOM1 with grids", "write PARAM,POSTEXT,YES in the bulk data");
+    refuse_file(file.name, "it has no table GEOM1 with grids",
+                "write PARAM,POSTEXT,YES in the bulk data");
   std::vector<Grid> grids;
   std::string why;
   for (const auto& [id, card] : geometry.systems.grids) {
     const auto grid = geometry.systems.place(id, why);
     if (!grid)
-      refuse(file, fmt::format("grid {}: {}", id, why),
-             "write its system as a CORD1R, CORD1C, CORD1S, CORD2R, CORD2C or CORD2S");
+      refuse_file(file.name, fmt::format("grid {}: {}", id, why),
+                  "write its system as a CORD1R, CORD1C, CORD1S, CORD2R, CORD2C or CORD2S");
     grids.push_back(*grid);
   }
   return grids;

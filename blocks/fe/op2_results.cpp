@@ -2,7 +2,7 @@
 
 #include <cmath>
 #include <titop/blocks/fe/op2_results.hpp>
-#include <titop/graph/error.hpp>
+#include <titop/blocks/fe/text_file.hpp>
 
 namespace titop::fe {
 
@@ -25,10 +25,6 @@ struct RecordWords {
   }
 };
 
-[[noreturn]] void refuse(const Op2File& file, const std::string& found, const std::string& hint) {
-  throw Error(Code::bad_file, fmt::format("{}: {}", file.name, found), hint);
-}
-
 /// Case control and parameters with which a run writes these tables.
 std::string ask(const std::string& parent = "g") {
   return fmt::format(
@@ -44,24 +40,24 @@ const Op2Table& table(const Op2File& file, const std::string& name) {
   for (const Op2Table& t : file.tables) {
     if (t.name != name || t.records.size() < 2) continue;
     if (found)
-      refuse(file, fmt::format("it has several tables {}", name),
-             "run one METHOD in one subcase, and write it to a file of its own");
+      refuse_file(file.name, fmt::format("it has several tables {}", name),
+                  "run one METHOD in one subcase, and write it to a file of its own");
     found = &t;
   }
-  if (!found) refuse(file, fmt::format("it has no table {}", name), ask());
+  if (!found) refuse_file(file.name, fmt::format("it has no table {}", name), ask());
   return *found;
 }
 
 int grid_number(long long number, const Op2File& file) {
   if (number < 1 || number > 2'000'000'000)
-    refuse(file, fmt::format("grid {}", number), "numbers of grids are above 0");
+    refuse_file(file.name, fmt::format("grid {}", number), "numbers of grids are above 0");
   return static_cast<int>(number);
 }
 
 double finite(double value, const Op2File& file, const Op2Table& t) {
   if (!std::isfinite(value))
-    refuse(file, fmt::format("table {} has {}", t.name, value),
-           "let the run end, and write it again");
+    refuse_file(file.name, fmt::format("table {} has {}", t.name, value),
+                "let the run end, and write it again");
   return value;
 }
 
@@ -70,11 +66,12 @@ double finite(double value, const Op2File& file, const Op2Table& t) {
 std::vector<long long> read_lama(const Op2File& file, NormalModes& modes) {
   const Op2Table& t = table(file, "LAMA");
   if (t.records.size() != 3)
-    refuse(file, fmt::format("table {} has {} records", t.name, t.records.size()),
-           "one subcase of normal modes has three: run one METHOD in one subcase");
+    refuse_file(file.name, fmt::format("table {} has {} records", t.name, t.records.size()),
+                "one subcase of normal modes has three: run one METHOD in one subcase");
   const RecordWords words{t.records[2], file.layout};
   if (words.size() % 7 != 0)
-    refuse(file, fmt::format("table {} has {} words", t.name, words.size()), "7 for each mode");
+    refuse_file(file.name, fmt::format("table {} has {} words", t.name, words.size()),
+                "7 for each mode");
   const auto n = static_cast<Index>(words.size() / 7);
   modes.omega.resize(n), modes.mass.resize(n);
   std::vector<long long> numbers;
@@ -95,12 +92,14 @@ void check_ident(const Op2File& file, const Op2Table& t, const RecordWords& iden
                  long long mode) {
   if (ident.size() < 10 || ident.integer(0) / 10 != 2 || ident.integer(1) != code ||
       ident.integer(9) != 8)
-    refuse(file, fmt::format("table {} has no real values of modes, 8 words per grid", t.name),
-           ask());
+    refuse_file(file.name,
+                fmt::format("table {} has no real values of modes, 8 words per grid", t.name),
+                ask());
   if (ident.integer(4) != mode)
-    refuse(file,
-           fmt::format("table {} has mode {} where LAMA has {}", t.name, ident.integer(4), mode),
-           ask());
+    refuse_file(
+        file.name,
+        fmt::format("table {} has mode {} where LAMA has {}", t.name, ident.integer(4), mode),
+        ask());
 }
 
 /// Six components by grid, a column per mode. Ident and data of each mode: 8 words per point, its
@@ -109,8 +108,8 @@ std::map<int, MatrixXd> values_at_grids(const Op2File& file, const std::string& 
                                         long long code, const std::vector<long long>& modes) {
   const Op2Table& t = table(file, name);
   if (t.records.size() != 1 + 2 * modes.size())
-    refuse(
-        file,
+    refuse_file(
+        file.name,
         fmt::format("table {} has {} records for {} modes", name, t.records.size(), modes.size()),
         ask());
   std::map<int, MatrixXd> values;
@@ -118,8 +117,8 @@ std::map<int, MatrixXd> values_at_grids(const Op2File& file, const std::string& 
     check_ident(file, t, {t.records[1 + 2 * k], file.layout}, code, modes[k]);
     const RecordWords words{t.records[2 + 2 * k], file.layout};
     if (words.size() % 8 != 0)
-      refuse(file, fmt::format("table {} has {} words in a mode", name, words.size()),
-             "8 for each grid");
+      refuse_file(file.name, fmt::format("table {} has {} words in a mode", name, words.size()),
+                  "8 for each grid");
     for (std::size_t i = 0; i < words.size(); i += 8) {
       if (words.integer(i + 1) != 1) continue;
       MatrixXd& value = values[grid_number(words.integer(i) / 10, file)];
@@ -137,7 +136,7 @@ const Op4Matrix& summary_matrix(const Op2File& file, const std::string& name,
                                 const std::string& parent) {
   for (const Op4Matrix& m : file.matrices)
     if (m.name == name) return find_matrix(file.matrices, name);
-  refuse(file, fmt::format("it has no matrix {}", name), ask(parent));
+  refuse_file(file.name, fmt::format("it has no matrix {}", name), ask(parent));
 }
 
 }  // namespace
@@ -158,10 +157,10 @@ ModalData op2_modal_data(const Op2File& file, const std::string& parent,
   const Op4Matrix& D = summary_matrix(file, "RBMASSS", parent);
   const Op4Matrix& L = summary_matrix(file, "MPFACS", parent);
   if (D.value.rows() != 6 || D.value.cols() != 6 || L.value.rows() != 6 || L.value.cols() != n)
-    refuse(file,
-           fmt::format("RBMASSS is {} x {}, MPFACS {} x {}, for {} modes", D.value.rows(),
-                       D.value.cols(), L.value.rows(), L.value.cols(), n),
-           "they are 6 x 6 and 6 by the number of modes");
+    refuse_file(file.name,
+                fmt::format("RBMASSS is {} x {}, MPFACS {} x {}, for {} modes", D.value.rows(),
+                            D.value.cols(), L.value.rows(), L.value.cols(), n),
+                "they are 6 x 6 and 6 by the number of modes");
   run.D = D.value;
   run.L = L.value;
   run.forces = values_at_grids(file, "OQG1", kSupportForces, run.modes.numbers);

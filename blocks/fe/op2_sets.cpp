@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <titop/blocks/fe/op2_results.hpp>
-#include <titop/graph/error.hpp>
+#include <titop/blocks/fe/text_file.hpp>
 
 /// op2_matrices: the degree of freedom of each row.
 namespace titop::fe {
@@ -10,10 +10,6 @@ namespace titop::fe {
 using Eigen::Index;
 
 namespace {
-
-[[noreturn]] void refuse(const Op2File& file, const std::string& found, const std::string& hint) {
-  throw Error(Code::bad_file, fmt::format("{}: {}", file.name, found), hint);
-}
 
 /// Integers of this record behind the header of the first table of these names; none without it.
 std::vector<long long> integers(const Op2File& file, const std::vector<std::string>& names,
@@ -38,15 +34,15 @@ std::vector<GridDof> all_dofs(const Op2File& file) {
   for (std::size_t i = 0; i + 1 < pairs.size(); i += 2) {
     const long long number = pairs[i], kind = pairs[i + 1] % 10;
     if (number < 1 || number > 2'000'000'000 || (kind != 1 && kind != 2))
-      refuse(file, fmt::format("EQEXIN has point {} of kind {}", number, kind),
-             "grids are of kind 1, scalar points of kind 2");
+      refuse_file(file.name, fmt::format("EQEXIN has point {} of kind {}", number, kind),
+                  "grids are of kind 1, scalar points of kind 2");
     points[pairs[i + 1] / 10] = {static_cast<int>(number), kind == 1};
   }
   std::vector<GridDof> dofs;
   for (const auto& [row, point] : points) {
     if (row != std::ssize(dofs) + 1)
-      refuse(file, fmt::format("EQEXIN has row {} behind {} rows", row, dofs.size()),
-             "the tables of one superelement");
+      refuse_file(file.name, fmt::format("EQEXIN has row {} behind {} rows", row, dofs.size()),
+                  "the tables of one superelement");
     const auto [number, is_grid] = point;
     for (int c = is_grid ? 1 : 0; c <= (is_grid ? 6 : 0); ++c) dofs.push_back({number, c});
   }
@@ -61,8 +57,8 @@ std::vector<GridDof> a_set(const Op2File& file, const std::vector<GridDof>& all)
   const std::vector<long long> sets = integers(file, {"USET", "USETS", "USET0"}, 1);
   if (sets.empty()) return {};
   if (sets.size() != all.size())
-    refuse(file, fmt::format("USET has {} rows, EQEXIN {}", sets.size(), all.size()),
-           "write both tables of one superelement");
+    refuse_file(file.name, fmt::format("USET has {} rows, EQEXIN {}", sets.size(), all.size()),
+                "write both tables of one superelement");
   std::vector<GridDof> dofs;
   for (std::size_t i = 0; i < sets.size(); ++i)
     if ((sets[i] & kOutsideA) == 0) dofs.push_back(all[i]);
@@ -83,10 +79,10 @@ GridMatrices op2_matrices(const Op2File& file, const std::string& stiffness,
       return result;
     }
   if (!a.empty())
-    refuse(file,
-           fmt::format("{} has {} rows, the a-set {}, the g-set {}", stiffness, K.value.rows(),
-                       a.size(), all.size()),
-           "name matrices of one of these sets: KAA and MAA, or KGG and MGG");
+    refuse_file(file.name,
+                fmt::format("{} has {} rows, the a-set {}, the g-set {}", stiffness, K.value.rows(),
+                            a.size(), all.size()),
+                "name matrices of one of these sets: KAA and MAA, or KGG and MGG");
   std::vector<int> ids;
   for (const Grid& g : op2_grids(file)) ids.push_back(g.id);
   return grid_matrices(file.name, K.value, M.value, ids, digits);

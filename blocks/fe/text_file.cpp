@@ -108,6 +108,10 @@ std::string printable(std::string text) {
 
 }  // namespace
 
+void refuse_file(const std::string& name, const std::string& found, const std::string& hint) {
+  throw Error(Code::bad_file, fmt::format("{}: {}", name, found), hint);
+}
+
 Mistake bad_line(const TextFile& file, int line, const std::string& found,
                  const std::string& expected) {
   const std::string where =

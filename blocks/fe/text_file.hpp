@@ -46,6 +46,10 @@ std::string_view trim(std::string_view text);
 bool parse(std::string_view text, double& value);
 bool parse(std::string_view text, int& value);
 
+/// Throws bad_file, "model.op2: found"; the hint is the way out.
+[[noreturn]] void refuse_file(const std::string& name, const std::string& found,
+                              const std::string& hint);
+
 /// `bad_file`, "beam.sti:12: found ..., expected ...": the expected text is the way out. Line 0:
 /// the whole file. Control characters of the found text become ?, beyond 2000 characters it is cut
 /// short.

@@ -258,6 +258,21 @@ TEST_CASE("a missing table is named with the line that writes it") {
                 {"grid 8"});
 }
 
+TEST_CASE("a grid twice in GEOM1: the same data, or refused") {
+  const auto with = [](float z) {
+    Op2Writer w({});
+    const auto grid = [&](double at) {
+      return w.integers({10, 0}) + w.real(1) + w.real(2) + w.real(at) + w.integers({0, 0, 0});
+    };
+    w.table("GEOM1", {w.integers({4501, 45, 1}) + grid(3)});
+    w.table("GEOM1S", {w.integers({4501, 45, 1}) + grid(z)});
+    w.end();
+    return read(w.bytes);
+  };
+  CHECK(fe::op2_grids(with(3)).size() == 1);
+  check_refused([&] { fe::op2_grids(with(4)); }, Code::bad_file, {"m.op2", "grid 10", "twice"});
+}
+
 TEST_CASE("broken OP2 files are refused with data block, record and byte") {
   const std::string good = modes({}, false);
   const auto with = [&](std::size_t at, std::int32_t value) {
