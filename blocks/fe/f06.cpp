@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <titop/blocks/fe/bulk_cards.hpp>
 #include <titop/blocks/fe/bulk_data.hpp>
 #include <titop/blocks/fe/f06_tables.hpp>
+#include <titop/blocks/fe/fortran.hpp>
 
 namespace titop::fe {
 
@@ -113,6 +115,19 @@ class F06Assembly {
   FileMistakes& mistakes_;
 };
 
+TextFile echo_of(const F06File& file) { return {file.name + ", bulk data echo", file.bulk, true}; }
+
+double wtmass(const F06File& file) {
+  const TextFile echo = echo_of(file);
+  for (const detail::BulkCard& card : detail::bulk_cards(echo)) {
+    if (card.name != "PARAM" || card.field(0) != "WTMASS") continue;
+    double value = 0;
+    if (parse_fortran(card.field(1), value) && value > 0) return value;
+    refuse_file(echo.name, fmt::format("PARAM,WTMASS is '{}'", card.field(1)), "a number above 0");
+  }
+  return 1;
+}
+
 /// Case control and parameters with which a run prints these tables.
 std::string ask(const std::string& parent = "g") {
   return fmt::format(
@@ -122,15 +137,12 @@ std::string ask(const std::string& parent = "g") {
       parent);
 }
 
-[[noreturn]] void refuse(const F06File& file, const std::string& found, const std::string& hint) {
-  throw Error(Code::bad_file, fmt::format("{}: {}", file.name, found), hint);
-}
-
 /// Tables without which there is no body, with the request that prints each.
 void require_tables(const F06File& file, const std::string& parent) {
   const auto require = [&](bool there, const char* table, const char* request) {
     if (!there)
-      refuse(file, fmt::format("it has no table {}, which {} prints", table, request), ask(parent));
+      refuse_file(file.name, fmt::format("it has no table {}, which {} prints", table, request),
+                  ask(parent));
   };
   require(!file.modes.shapes.empty(), "REAL EIGENVECTOR", "VECTOR(PRINT)=ALL");
   require(file.factors.has_value(), "MODAL PARTICIPATION FACTORS", "MEFFMASS(PARTFAC)=YES");
@@ -147,11 +159,12 @@ void require_squares(const F06File& file) {
   for (Index c = 0; c < 6; ++c)
     for (Index k = 0; k < off.cols(); ++k)
       if (off(c, k) > kSameSquares * file.effective->row(c).cwiseAbs().maxCoeff())
-        refuse(file,
-               fmt::format("mode {} has the effective mass {:.6e}, its participation factor {:.6e}",
-                           file.modes.numbers[static_cast<std::size_t>(k)], (*file.effective)(c, k),
-                           (*file.factors)(c, k)),
-               "the mass is its square: normalise the modes to MASS, and print one run");
+        refuse_file(
+            file.name,
+            fmt::format("mode {} has the effective mass {:.6e}, its participation factor {:.6e}",
+                        file.modes.numbers[static_cast<std::size_t>(k)], (*file.effective)(c, k),
+                        (*file.factors)(c, k)),
+            "the mass is its square: normalise the modes to MASS, and print one run");
 }
 
 /// Vector from P to the grid that a table refers to; the origin for 0.
@@ -182,16 +195,17 @@ F06File read_f06(const std::filesystem::path& path) {
   mistakes.finish();
   F06File result = F06Assembly(file, std::move(tables), mistakes).file();
   mistakes.finish();
+  result.wtmass = wtmass(result);
   return result;
 }
 
 std::vector<Grid> f06_grids(const F06File& file) {
   if (file.bulk.empty())
-    refuse(
-        file, "it has no positions of its grids",
+    refuse_file(
+        file.name, "it has no positions of its grids",
         "give its bulk data (ImportOptions::grids; titop import --grids FILE.bdf), or print them: "
         "ECHO=SORT in the case control");
-  return detail::grids_in({file.name + ", bulk data echo", file.bulk, true});
+  return detail::grids_in(echo_of(file));
 }
 
 ModalData f06_modal_data(const F06File& file, const std::vector<Grid>& grids,
@@ -206,13 +220,15 @@ ModalData f06_modal_data(const F06File& file, const std::vector<Grid>& grids,
   const Vector3d P = detail::find_grid(grids, file.name, parent).position;
   const F06Mass& D = file.rigid ? *file.rigid : *file.weight;
   const Matrix6 to_P = tau(P - reference(file, grids, D.about));
-  run.D = to_P.transpose() * D.value * to_P;
+  const Matrix6 mass = file.rigid ? D.value : Matrix6(file.wtmass * D.value);
+  run.D = to_P.transpose() * mass * to_P;
   run.L = tau(P - reference(file, grids, file.about)).transpose() * *file.factors;
-  run.digits = digits_left(D.value, run.D, to_P);
+  run.digits = digits_left(mass, run.D, to_P);
   if (run.digits < 1)
-    refuse(file,
-           fmt::format("moved to grid {}, its rigid mass has {:.1f} digits", parent, run.digits),
-           ask(parent));
+    refuse_file(
+        file.name,
+        fmt::format("moved to grid {}, its rigid mass has {:.1f} digits", parent, run.digits),
+        ask(parent));
   return detail::clamped_modal_data(run, parent, children);
 }
 

@@ -30,6 +30,7 @@ struct F06File {
   std::optional<F06Mass> rigid = {};   ///< A-SET RIGID BODY MASS MATRIX
   std::optional<F06Mass> weight = {};  ///< GRID POINT WEIGHT GENERATOR, in units of weight
   std::string bulk = {};               ///< SORTED BULK DATA ECHO, its cards
+  double wtmass = 1;                   ///< PARAM,WTMASS of the echo: mass of a unit of weight
 };
 
 /// Tables of one subcase, over any number of pages, with titles of any text. Eigenvalues before the
@@ -47,9 +48,9 @@ std::vector<Grid> f06_grids(const F06File& file);
 /// Modal data of a body that the run has clamped at grid `parent` alone, like `op2_modal_data`.
 /// `grids`: positions and frames, from the bulk data. L_P is the table MODAL PARTICIPATION FACTORS.
 /// D_P is the A-SET RIGID BODY MASS MATRIX, without the mass lumped at the clamped grid; if the
-/// file does not have it, the matrix of the GRID POINT WEIGHT GENERATOR, with that mass (in units
-/// of mass unless PARAM,WTMASS is given). Both are moved from their reference points to the parent.
-/// `digits` is 7, less the digits that this move costs.
+/// file does not have it, the matrix of the GRID POINT WEIGHT GENERATOR, with that mass, times
+/// `wtmass` (which must be 1 if the file has no echo). Both are moved from their reference points
+/// to the parent. `digits` is 7, less the digits that this move costs.
 ///
 /// Throws the errors of `op2_modal_data`; bad_file for effective masses that are not the squares of
 /// the participation factors.

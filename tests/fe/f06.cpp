@@ -84,6 +84,7 @@ struct TipMass {
     bool vectors = true, forces = true, factors = true, rigid = true, weight = false;
     double share = 1;  ///< of the forces that grid 7 takes
     double mass = 1, effective = 1;
+    double wtmass = 1;
   };
   /// Of the tables about the origin of the basic system.
   std::string f06() const { return f06(Print()); }
@@ -93,8 +94,9 @@ struct TipMass {
     w.subtitle = "MODAL EFFECTIVE MASS FRACTION, R E A L   E I G E N V A L U E S";
     w.echo({"CORD2R  3       0       0.      0.      0.      1.      0.      0.      +A",
             "+A      0.      1.      0.", "GRID    7               1.      2.      3.",
-            "GRID    9               5.      2.      3.      3"});
-    if (print.weight) w.weight(about(Vector3d::Zero()), 0);
+            "GRID    9               5.      2.      3.      3",
+            fmt::format("PARAM   WTMASS  {}", print.wtmass)});
+    if (print.weight) w.weight(about(Vector3d::Zero()) / print.wtmass, 0);
     w.eigenvalues(3 * omega, 0, 2, "            (BEFORE AUGMENTATION OF RESIDUAL VECTORS)\n");
     w.eigenvalues(omega, 0, 1), w.eigenvalues(omega, 1, 2);  // on two pages
     if (print.rigid) w.rigid(about(Vector3d::Zero()), "AT ORIGIN OF BASIC COORDINATE SYSTEM");
@@ -157,6 +159,13 @@ TEST_CASE("without the a-set's mass that of the weight generator, about its own 
   CHECK(!file.rigid);
   const ModalData data = fe::f06_modal_data(file, fe::f06_grids(file), "7", {});
   CHECK((data.D_P - right.D).cwiseAbs().maxCoeff() <= kPrinted * 100);
+  // A model in inch, lbf, s whose densities are weights.
+  const fe::F06File weights = read(right.f06({.rigid = false, .weight = true, .wtmass = 2.59e-3}));
+  CHECK(weights.wtmass == 2.59e-3);
+  CHECK((fe::f06_modal_data(weights, fe::f06_grids(weights), "7", {}).D_P - right.D)
+            .cwiseAbs()
+            .maxCoeff() <= kPrinted * 100);
+  check_refused([&] { read(right.f06({.wtmass = -1})); }, Code::bad_file, {"WTMASS", "-1"});
 }
 
 TEST_CASE("a missing table is named, with the case control that prints it") {
@@ -206,7 +215,7 @@ TEST_CASE("broken tables are refused with their line") {
   refused("             9      G ", "             7      G ", {"m.f06:", "once"});
   refused("EIGENVALUE =  7.500000E-01\n                    F O", "EIGENVALUE =  7.6E-01\n F O",
           {"7.600000e-01", "eigenvalue"});
-  refused("*  2.000000E+00", "*  2.00000X", {"m.f06:51", "rigid mass"});
+  refused("*  2.000000E+00", "*  2.00000X", {"m.f06:52", "rigid mass"});
   check_refused([&] { read(good + " *** USER FATAL MESSAGE 9050 (SEKRRS)\n"); }, Code::bad_file,
                 {"m.f06:", "FATAL MESSAGE 9050"});
   check_refused([&] { read(good + good.substr(good.find("1    WING"))); }, Code::bad_file,
