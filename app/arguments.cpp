@@ -21,7 +21,7 @@ constexpr const char* kCommands = R"(usage:
   titop export DIAGRAM.json FILE           the model in the format of FILE's extension:
       NAME.hpp     C++17 header, and its test NAME_test.cpp
       NAME.m       MATLAB or Octave function
-      FILE.mat     MAT-file of A, B, C, D and the names; needs libmatio
+      FILE.mat     MAT-file of A, B, C, D and the names
       NAME.py      Python module, and its arrays NAME_A.npy ...
       FILE.json    the model with its poles, certificate and notes
       FILE.csv     frequency response; needs --omega

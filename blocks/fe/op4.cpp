@@ -24,21 +24,26 @@ std::string capitals(std::string_view text) {
   return result;
 }
 
+std::string too_large(long long rows, long long columns, Op4Taken& taken) {
+  if (columns > kMostOfMatrix / rows)
+    return fmt::format(
+        "has {} rows and {} columns, more than 25 million entries: reduce the model "
+        "(Craig-Bampton)",
+        rows, columns);
+  if (taken.entries + columns * rows > kMostEntries)
+    return "comes after 100 million entries of the file: ask for it alone, by its name";
+  taken.entries += columns * rows;
+  return {};
+}
+
 namespace {
 
 /// Why a matrix of this header is not read; empty if it is.
-std::string unread(const Op4Header& h, const Op4Taken& taken) {
+std::string unread(const Op4Header& h, Op4Taken& taken) {
   if (!taken.only.empty() && !taken.only.contains(h.name)) return "was not asked for";
   if (h.type == 3 || h.type == 4)
     return "is complex: write the real stiffness and mass, without structural damping (PARAM,G)";
-  if (h.columns > kMostOfMatrix / h.rows)
-    return fmt::format(
-        "has {} rows and {} columns, more than 25 million entries: reduce the model in Nastran "
-        "(Craig-Bampton)",
-        h.rows, h.columns);
-  if (taken.entries + h.columns * h.rows > kMostEntries)
-    return "comes after 100 million entries of the file: ask for it alone, by its name";
-  return {};
+  return too_large(h.rows, h.columns, taken);
 }
 
 }  // namespace
@@ -51,7 +56,6 @@ Op4Matrix make_matrix(const Op4Header& h, Op4Taken& taken, const Refuse& refuse)
   Op4Matrix matrix{
       h.name, static_cast<int>(h.form), {}, h.type == 1 ? 7.0 : 15.0, unread(h, taken)};
   if (!matrix.unread.empty()) return matrix;
-  taken.entries += h.columns * h.rows;
   matrix.value.setZero(h.rows, h.columns);
   return matrix;
 }

@@ -30,6 +30,10 @@ struct Op4Taken {
   long long entries = 0;
 };
 
+/// The reason why a matrix of this size, above 0, is not to be read: 25 million entries, or 100
+/// million with those taken before. Empty if it is read.
+std::string too_large(long long rows, long long columns, Op4Taken& taken);
+
 /// The empty matrix of this header; `unread` is the reason if it is not to be filled. Refuses
 /// invalid headers.
 Op4Matrix make_matrix(const Op4Header& header, Op4Taken& taken, const Refuse& refuse);

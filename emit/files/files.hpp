@@ -28,9 +28,8 @@ void write_matlab(const StateSpace& model, const std::filesystem::path& file);
 /// Its state_space(), with its `dense_warnings` as comments at the head.
 void write_matlab(const System& system, const std::filesystem::path& file);
 
-/// A MAT-file of MATLAB and Octave, version 5: `load model.mat` gives A, B, C, D, and the names as
-/// cell arrays states, inputs, outputs. Throws bad_file also if the library was built without
-/// libmatio. O(n^2).
+/// A MAT-file of MATLAB and Octave, version 5, not compressed: `load model.mat` gives A, B, C, D,
+/// and the names as cell arrays states, inputs, outputs. Throws size for a matrix of 2 GB. O(n^2).
 void write_mat(const StateSpace& model, const std::filesystem::path& file);
 /// Its state_space(), with its `dense_warnings` as a cell array warnings.
 void write_mat(const System& system, const std::filesystem::path& file);

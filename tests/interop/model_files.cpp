@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstring>
+#include <titop/blocks/fe/inflate.hpp>
 #include <titop/blocks/fe/mat.hpp>
 #include <titop/titop.hpp>
 
@@ -118,11 +119,7 @@ TEST_CASE("Octave loads the MAT-file to the last bit, and writes one with the sa
   if (!runs("command -v octave-cli")) return titop_test::skip("Octave is not installed");
   const StateSpace& m = model().state_space();
   const Folder folder;
-  try {
-    write_mat(model(), folder.path / "m.mat");
-  } catch (const Error&) {
-    return titop_test::skip("the library was built without libmatio");
-  }
+  write_mat(model(), folder.path / "m.mat");
   folder.write("check.m", R"(
 load ("m.mat");
 f = fopen ("entries", "w");
@@ -140,7 +137,8 @@ save ("-v6", "octave6.mat", "A", "S");
   for (const auto* list : {&m.states, &m.inputs, &m.outputs})
     for (const std::string& name : *list) names += name + "\n";
   CHECK(folder.read("names") == names);
-  for (const char* file : {"octave.mat", "octave6.mat"}) {
+  for (const char* file : {"octave6.mat", "octave.mat"}) {
+    if (file == std::string("octave.mat") && !fe::detail::can_inflate()) break;
     const auto all = fe::read_mat(folder.path / file);
     CHECK(fe::find_matrix(all, "A").value == m.A);
     CHECK(fe::find_matrix(all, "S").value == m.A);
