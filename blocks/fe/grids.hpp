@@ -67,9 +67,13 @@ Eigen::MatrixXd rigid_motions_by_statics(const GridMatrices& matrices, int grid)
 /// Positions and frames of all grids by these rigid motions, for data without positions: this grid
 /// is the origin, its frame the body's. A grid with three rotations has the frame in which R turns
 /// it, others have that of this grid; coordinates on which no row depends (planar models) are 0.
-/// Positions are as exact as R: `noise` is by how much R differs from the motion of a rigid body.
-/// Throws the errors of `rigid_motions_by_statics`, and bad_modes for a grid that does not move as
-/// a rigid body, by more than 1e-3.
+/// Positions are as exact as R: `noise` is by how much R differs from the motion of a rigid body,
+/// lengths relative to the largest distance of a grid.
+///
+/// Throws the errors of `rigid_motions_by_statics`; bad_modes if K resists rigid motion by more
+/// than 1e-6 of its terms or 100 units of its last digit, and for a grid that does not move as a
+/// rigid body, by more than the errors of K explain (docs/numerics.md), or by more than 1e-3. Cost
+/// 3 n^3.
 std::vector<Grid> grids_by_statics(const GridMatrices& matrices, int grid);
 
 }  // namespace titop::fe

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <cmath>
 #include <titop/blocks/fe/beam.hpp>
 #include <titop/blocks/fe/dmig.hpp>
 #include <titop/blocks/flexible_body.hpp>
@@ -170,4 +171,45 @@ TEST_CASE("matrices without positions become a body: positions and frames by sta
   for (int i = 0; i < 3; ++i)
     CHECK((planar[static_cast<std::size_t>(i)].position - Vector3d(i, 0, 0)).norm() <= 1e-6);
   check_refused([&] { fe::grids_by_statics(m, 4); }, Code::unknown_name, {"beam", "grid 4"});
+}
+
+TEST_CASE("by statics: the misfit of rounded matrices is explained, supports are refused") {
+  // Errors of half a unit of the seventh digit: K resists rigid motion, and misfits are explained.
+  fe::GridMatrices rounded = rows(kAll);
+  for (Index j = 0; j < 18; ++j)
+    for (Index i = 0; i <= j; ++i) {
+      rounded.K(i, j) *= 1 + 5e-8 * std::cos(static_cast<double>(i * i + 3 * j));
+      rounded.K(j, i) = rounded.K(i, j);
+    }
+  rounded.digits = 7;
+  double worst = 0;
+  for (const fe::Grid& g : fe::grids_by_statics(rounded, 1)) worst = std::max(worst, g.noise);
+  CHECK(worst > 1e-9);
+  CHECK(worst < 1e-3);
+  // The same errors in matrices that claim 15 digits: resistance above 1e-6 is a support, below it
+  // counts as their error.
+  rounded.digits = 15;
+  CHECK_NOTHROW(fe::grids_by_statics(rounded, 1));
+  fe::GridMatrices held = rows(kAll);
+  held.K(7, 7) *= 1 + 1e-4;  // grid 2 held along y
+  check_refused([&] { fe::grids_by_statics(held, 1); }, Code::bad_modes,
+                {"beam", "grid 1", "supports"});
+}
+
+TEST_CASE("by statics: a null space of K that is no rigid motion is refused, in any unit") {
+  // Rows of grid 3 in the order y, x, z: K is free, but its grid 3 is in a left-handed frame.
+  for (const double metre : {1.0, 1e3}) {
+    CAPTURE(metre);
+    fe::GridMatrices m = rows(kAll);
+    Eigen::VectorXd scale = Eigen::VectorXd::Ones(18);
+    for (const Index first : {0, 6, 12}) scale.segment<3>(first).setConstant(1 / metre);
+    m.K = (scale.asDiagonal() * m.K * scale.asDiagonal()).eval();
+    for (const fe::Grid& g : fe::grids_by_statics(m, 1)) CHECK(g.noise <= 1e-10);
+    Eigen::PermutationMatrix<18> swap;
+    swap.setIdentity();
+    swap.applyTranspositionOnTheRight(12, 13);
+    m.K = (swap.transpose() * m.K * swap).eval();
+    check_refused([&] { fe::grids_by_statics(m, 1); }, Code::bad_modes,
+                  {"grid 3", "beam", "grid 1", "rigid body", "rows of other grids"});
+  }
 }
