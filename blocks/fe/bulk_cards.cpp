@@ -47,6 +47,7 @@ void add_line(std::string_view text, BulkCard& card, bool continuation) {
   const std::size_t count = wide ? 4 : 8;
   const bool free = text.find(',') != std::string_view::npos;
   std::vector<std::string_view> fields = free ? comma_fields(text) : column_fields(text, count);
+  if (!free && text.find('\t') != std::string_view::npos) card.mistake = "a tab";
   if (const std::string_view data = data_behind(fields, count); free && !data.empty())
     card.mistake = fmt::format("'{}' behind {} fields", data, count);
   if (const std::string mark = mark_in(fields[0]);

@@ -13,7 +13,7 @@ struct BulkCard {
   std::vector<std::string_view> fields;  ///< trimmed, without name and continuation marks
   int line = 0;
   std::string mark = {};     ///< of the last line, for its continuation, without + or *
-  std::string mistake = {};  ///< data that no field takes, another card's continuation
+  std::string mistake = {};  ///< a tab, data that no field takes, another card's continuation
 
   /// Empty behind the last one.
   std::string_view field(std::size_t i) const {

@@ -73,8 +73,9 @@ class BulkReader {
     if (!grid && !card.name.starts_with("CORD")) return;
     if (!card.mistake.empty())
       mistakes_.add(bad_line(file_, card.line, fmt::format("{} in {}", card.mistake, card.name),
-                             "each line with its fields alone, each continuation right behind its "
-                             "line, with the same mark"));
+                             "each line with its fields alone, in columns without tabs or between "
+                             "commas, each continuation right behind its line, with the same "
+                             "mark"));
     if (card.fields.size() <= last_field(card))
       mistakes_.add(bad_line(file_, card.line, fmt::format("no continuation of {}", card.name),
                              "it right behind its line"));

@@ -22,9 +22,9 @@ namespace titop::fe {
 /// Throws bad_file, all mistakes together, with file and line: a field that is no number, a grid or
 /// a coordinate system twice with different data, a coordinate system that is not there, refers to
 /// itself or over more than 1000 others to the basic one, one of another kind that a grid uses
-/// (CORD3G), axes without directions, INCLUDE and GRDSET (their effect would
-/// be missing), data behind the last field of a line, a continuation whose mark is not that of its
-/// card or that is missing, no GRID at all.
+/// (CORD3G), axes without directions, INCLUDE and GRDSET (their effect would be missing), tabs
+/// between columns, data behind the last field of a line, a continuation whose mark is not that of
+/// its card or that is missing, no GRID at all.
 std::vector<Grid> read_grids(const std::filesystem::path& path);
 
 /// The same of a text in memory. For the folder's own files.

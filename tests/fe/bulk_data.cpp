@@ -142,6 +142,8 @@ TEST_CASE("no data of a line are lost, and no continuation goes to another card"
       "CORD2R  10      0       0.      0.      2.      1.      0.      2.      ";
   CHECK(read(system + "+A\n+A      0.      1.      2.\n" + grid)[0].position == Vector3d(3, 1, 4));
   CHECK(read(system + "\n        0.      1.      2.\n" + grid)[0].position == Vector3d(3, 1, 4));
+  refused("GRID\t9\t0\t1.\t2.\t3.\n", {"m.bdf:1", "a tab in GRID", "columns"});
+  CHECK(read("GRID,\t9,0,\t1.,2.,3.\n")[0].position == Vector3d(1, 2, 3));
   const std::string stolen = system + "+A\n" + grid + "+A      0.      1.      2.\n";
   refused(stolen, {"m.bdf:1", "CORD2R", "continuation"});
   refused(stolen, {"m.bdf:2", "GRID", "'A'"});
