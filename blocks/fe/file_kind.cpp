@@ -52,7 +52,10 @@ FileKind kind_of_text(const TextFile& file) {
       return FileKind::f06;
     deck = deck || line.text.starts_with("BEGIN BULK") || line.text.starts_with("GRID");
   }
-  if (deck) refuse(file, "bulk data without DMIG", kAskNastran);
+  if (deck)
+    refuse(file, "bulk data without DMIG",
+           "they say where grids are (--grids FILE): import the OP4 or punch file of the run, "
+           "which EXTSEOUT(ASMBULK,EXTBULK,MATOP4=31) or (ASMBULK,EXTBULK,DMIGPCH) writes");
   refuse(file, "another text",
          "of Abaqus and ANSYS write the modes, L_P and D_P as CSV (read_modal_csv)");
 }
@@ -65,6 +68,7 @@ FileKind kind_of_file(const std::filesystem::path& path) {
   if (path.extension() == ".f06" || path.extension() == ".F06") return FileKind::f06;
   if (path.extension() == ".mat") return FileKind::mat;
   const TextFile file = read_text(path);
+  if (file.content.starts_with("MATLAB ")) return FileKind::mat;
   if (file.content.find('\0') == std::string::npos) return kind_of_text(file);
   // The length of the first Fortran record in either byte order: the head of a matrix, a marker.
   const std::string_view head = std::string_view(file.content).substr(0, 4);
@@ -72,6 +76,7 @@ FileKind kind_of_file(const std::filesystem::path& path) {
        {std::pair{char{24}, FileKind::op4}, std::pair{char{48}, FileKind::op4},
         std::pair{char{4}, FileKind::op2}, std::pair{char{8}, FileKind::op2}})
     if (head == std::string{length, 0, 0, 0} || head == std::string{0, 0, 0, length}) return kind;
+  if (head.starts_with("\x1f\x8b")) refuse(file, "a file compressed by gzip", "gunzip it");
   refuse(file, "a binary file of another kind", kAskNastran);
 }
 

@@ -77,8 +77,8 @@ class Importer {
     for (const Op4Matrix& m : all) {
       names.push_back(m.name);
       if (m.unread.empty())
-        tell("{}: {} x {}, form {}, {:.3g} digits", m.name, m.value.rows(), m.value.cols(), m.form,
-             m.digits);
+        tell("{}: {} x {}{}, {:.3g} digits", m.name, m.value.rows(), m.value.cols(),
+             m.form > 0 ? fmt::format(", form {}", m.form) : "", m.digits);
       else
         tell("{}: {}", m.name, m.unread);
     }

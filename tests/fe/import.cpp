@@ -164,13 +164,16 @@ TEST_CASE("a scalar point with the number of a grid is not that grid") {
 
 TEST_CASE("other files are refused with the output to request from the program") {
   check_refused([&] { fe::import_body(kData + "/nastran_cantilever/pn_mwe_s-solution_1.dat"); },
-                Code::bad_file, {"pn_mwe_s-solution_1.dat", "EXTSEOUT"});
+                Code::bad_file, {"pn_mwe_s-solution_1.dat", "--grids", "EXTSEOUT"});
   const titop_test::Folder folder;
   folder.write("m.f06", "1   MSC.NASTRAN JOB\n");
   check_refused([&] { fe::import_body(folder.path / "m.f06"); }, Code::bad_file,
                 {"m.f06", "REAL EIGENVALUES", "METHOD"});
   folder.write("m.bin", std::string("\1\2\0\0rubbish", 11));
   check_refused([&] { fe::import_body(folder.path / "m.bin"); }, Code::bad_file, {"m.bin"});
+  folder.write("m.op4.gz", std::string("\x1f\x8b\x08\0\0rubbish", 12));
+  check_refused([&] { fe::import_body(folder.path / "m.op4.gz"); }, Code::bad_file,
+                {"m.op4.gz", "gzip", "gunzip"});
   std::filesystem::copy_file(kOp4, folder.path / "alone.op4");
   check_refused([&] { fe::import_body(folder.path / "alone.op4"); }, Code::bad_file,
                 {"alone.op4", "--grids", "ASMBULK"});
