@@ -15,6 +15,7 @@
 using namespace titop;
 using Eigen::Index;
 using fe_test::relative;
+using titop_test::check_refused;
 using titop_test::replaced;
 using titop_test::says;
 
@@ -98,6 +99,13 @@ TEST_CASE("cantilever: the body it makes") {
   REQUIRE(poles.size() == 3);
   for (std::size_t k = 0; k < 3; ++k)
     CHECK(relative(poles[k].omega, body.data().omega(static_cast<Index>(k))) <= 1e-14);
+  // Freed, its roll would need what the report calls singular.
+  Diagram freed{"freed"};
+  auto beam_alone = freed.add("beam", body);
+  release(beam_alone);
+  beam_alone.child.force = freed.input("u", 6);
+  freed.output("a", 6) = beam_alone.child.accel;
+  check_refused([&] { compile(freed); }, Code::improper, {"beam.parent", "residual mass", "rx"});
   // Tip flexibility of the beam with shear (a rod's factor is 0.9), except for the higher modes.
   const double E = 6.898e10, G = E / 2.66, A = std::numbers::pi * 1e-4, I = A * 1e-4 / 4;
   const Eigen::MatrixXd Phi = body.data().children[0].Phi_C;
