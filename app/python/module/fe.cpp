@@ -1,3 +1,8 @@
+#include <map>
+#include <set>
+#include <titop/blocks/fe/mat.hpp>
+#include <titop/blocks/fe/op4.hpp>
+
 #include "python.hpp"
 
 namespace titop::python {
@@ -136,19 +141,45 @@ void bind_meshes(py::module_& m) {
       "Mass, residual mass, children and effective masses as text.");
 }
 
+/// Without names asked for, those that are unread or repeat with other values are left out.
+std::map<std::string, Eigen::MatrixXd> by_name(const std::vector<fe::Op4Matrix>& all,
+                                               const std::vector<std::string>& only) {
+  std::map<std::string, Eigen::MatrixXd> result;
+  for (const std::string& name : only) {
+    const fe::Op4Matrix& matrix = fe::find_matrix(all, name);
+    result[matrix.name] = matrix.value;
+  }
+  if (!only.empty()) return result;
+  std::set<std::string> ambiguous;
+  for (const fe::Op4Matrix& matrix : all) {
+    if (!matrix.unread.empty()) continue;
+    const auto [at, is_new] = result.insert({matrix.name, matrix.value});
+    if (!is_new && (at->second.rows() != matrix.value.rows() ||
+                    at->second.cols() != matrix.value.cols() || at->second != matrix.value))
+      ambiguous.insert(matrix.name);
+  }
+  for (const std::string& name : ambiguous) result.erase(name);
+  return result;
+}
+
 void bind_readers(py::module_& m) {
   m.def("read_modal_csv", &fe::read_modal_csv, "path"_a, "Modal data of a text file.");
   m.def("modal_csv", &fe::modal_csv, "data"_a, "The same data as such a text.");
   m.def(
       "read_op4",
       [](const std::filesystem::path& path, const std::vector<std::string>& only) {
-        std::map<std::string, Eigen::MatrixXd> result;
-        for (fe::Op4Matrix& matrix : fe::read_op4(path, only))
-          if (matrix.unread.empty()) result[matrix.name] = std::move(matrix.value);
-        return result;
+        return by_name(fe::read_op4(path, only), only);
       },
-      "path"_a, "only"_a = std::vector<std::string>(),
-      "{name: matrix} of a file of Nastran's OUTPUT4; of a name that repeats the last.");
+      "path"_a, "only"_a = std::vector<std::string>(), Unlocked(),
+      "{name: matrix} of a file of Nastran's OUTPUT4, or only those of these names; without names, "
+      "complex matrices and names that repeat with other values are left out.");
+  m.def(
+      "read_mat",
+      [](const std::filesystem::path& path, const std::vector<std::string>& only) {
+        return by_name(fe::read_mat(path), only);
+      },
+      "path"_a, "only"_a = std::vector<std::string>(), Unlocked(),
+      "The same of a MAT-file of MATLAB or Octave (-v6, -v7); names in capitals.");
   m.def(
       "scaled",
       [](const ModalData& data, double length, double mass, double time) {
@@ -177,8 +208,8 @@ void bind_readers(py::module_& m) {
       "file"_a, py::kw_only(), "parent"_a = "", "children"_a = std::vector<std::string>(),
       "modes"_a = fe::ModeOptions(), "units"_a = std::array<double, 3>{1, 1, 1}, "grids"_a = "",
       "stiffness"_a = "", "mass"_a = "", Unlocked(),
-      "From a file of Nastran (OP4, OP2, DMIG), CalculiX or modal data (CSV) to a body, with all "
-      "checks; units (length [m], mass [kg], time [s]) of the file.");
+      "From a file of Nastran (OP4, OP2, f06, DMIG), MATLAB, CalculiX or modal data (CSV) to a "
+      "body, with all checks; units (length [m], mass [kg], time [s]) of the file.");
 }
 
 }  // namespace

@@ -41,6 +41,10 @@ void bind_model_files(py::module_& m) {
         "system"_a, "file"_a, "The same of a StateSpace.");
   m.def("write_matlab", py::overload_cast<const Lft&, const Path&>(&write_matlab), "system"_a,
         "file"_a, "The same of an Lft, with a uss.");
+  m.def("write_mat", py::overload_cast<const System&, const Path&>(&write_mat), "system"_a,
+        "file"_a, Unlocked(), "A MAT-file of A, B, C, D and the names.");
+  m.def("write_mat", py::overload_cast<const StateSpace&, const Path&>(&write_mat), "system"_a,
+        "file"_a, "The same of a StateSpace.");
   m.def(
       "write_csv",
       [](const System& s, const std::vector<double>& omega, const Path& file) {
