@@ -41,6 +41,7 @@ std::vector<Complex> poles(const Table<Digits>& A) {
     const Digits root = sqrt(Digits(abs(under)));
     if (under < 0) {
       list.emplace_back(rounded(middle), rounded(root));
+      if (list.back().imag() == 0) list.push_back(list.back());  // a double pole, apart by rounding
     } else {
       list.emplace_back(rounded(middle + root), 0);
       list.emplace_back(rounded(middle - root), 0);

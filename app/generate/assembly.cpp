@@ -24,10 +24,12 @@ class ManualAssembly {
       inputs_ += static_cast<std::size_t>(plan.inputs[i].size);
     }
     M_ = D_ = K_ = Table<S>(columns.count, columns.count);
-    F_ = Table<S>(columns.count, inputs_ + plan.controls.size());
+    for (const Control& c : plan.controls) channel_.push_back(channels_), channels_ += c.size();
+    F_ = Table<S>(columns.count, inputs_ + channels_);
     for (std::size_t i = 0; i < plan.blocks.size(); ++i) add(static_cast<int>(i));
     for (const Load& load : plan.loads) add(load);
-    for (std::size_t k = 0; k < plan.controls.size(); ++k) add(plan.controls[k], inputs_ + k);
+    for (std::size_t k = 0; k < plan.controls.size(); ++k)
+      add(plan.controls[k], inputs_ + channel_[k]);
     close();
   }
 
@@ -156,19 +158,20 @@ class ManualAssembly {
     load(pushed, input(l.input));
   }
 
-  /// Reaction of the controller's force.
+  /// Reaction of the controller's forces.
   void add(const Control& c, std::size_t column) {
+    if (c.law == Control::Law::filter) return;
     const bool joint = c.law == Control::Law::position &&
                        plan_.blocks[static_cast<std::size_t>(c.block)].joint.has_value();
     if (joint)
       F_(own_[static_cast<std::size_t>(c.block)], column) += S(-1);
     else
-      load(-(rows_along(c) * motion(c.at)), column);
+      for (const ControlPoint& at : c.at) load(-motion_along(at), column++);
   }
 
-  Table<S> rows_along(const Control& c) const {
-    if (!c.along) return identity<S>(1);
-    return part_rows<S>({PlannedPart::Kind::along, *c.along}, 6);
+  Table<S> motion_along(const ControlPoint& at) const {
+    if (!at.along) return motion(at.point);
+    return part_rows<S>({PlannedPart::Kind::along, *at.along}, 6) * motion(at.point);
   }
 
   void close() {
@@ -253,6 +256,11 @@ class ManualAssembly {
   Table<S> reading(const PlannedReading& r) const {
     const auto block = static_cast<std::size_t>(r.point.block);
     if (r.of == PlannedReading::Of::relative) return q_.rows({own_[block]});
+    if (r.of == PlannedReading::Of::control) {
+      Table<S> v(plan_.controls[block].size(), states_ + F_.cols());
+      v.add(identity<S>(v.rows()), 0, states_ + inputs_ + channel_[block]);
+      return v;
+    }
     if (r.of == PlannedReading::Of::reaction) return holding(r.point);
     if (r.of == PlannedReading::Of::support) {
       // Force required on the base in addition to all other forces; the port has the force that the
@@ -289,13 +297,16 @@ class ManualAssembly {
 
   Table<S> measured(const Control& c) const {
     if (c.law == Control::Law::position) return q_.rows({own_[static_cast<std::size_t>(c.block)]});
-    return rows_along(c) * motion(c.at) * qdd_;
+    Table<S> e(0, qdd_.cols());
+    for (const ControlPoint& at : c.at) e.append(motion_along(at) * qdd_);
+    return e;
   }
 
   const ScenePlan& plan_;
   std::vector<std::size_t> first_, own_;  ///< columns of each block: its base, its own
   std::map<std::string, std::size_t> first_input_;
-  std::size_t inputs_ = 0, nz_ = 0, states_ = 0;
+  std::size_t inputs_ = 0, channels_ = 0, nz_ = 0, states_ = 0;
+  std::vector<std::size_t> channel_;  ///< first output of each controller
   std::map<std::pair<int, std::string>, Table<S>> motions_;
   Table<S> M_, D_, K_, F_, G_;
   Table<S> q_, qd_, qdd_;

@@ -64,6 +64,8 @@ bool option(const std::string& word, CommandWords& words, GenerateOptions& o) {
   } else if (word == "--stiffness") {
     o.stiffness_low = words.number(-20, 40);
     o.stiffness_high = words.number(o.stiffness_low + 1, 41);
+  } else if (word == "--states") {
+    o.states = words.number(1, 12);
   } else if (word == "--no-controllers") {
     o.controllers = false;
   } else if (word == "--twins") {

@@ -15,6 +15,8 @@ inline constexpr const char* kUsage =
       --shape chain|tree|star              --bodies N    --loops N
       --damping none|some|all              --stiffness LOW HIGH    powers of two
       --no-controllers                     --twins       equal bodies in pairs
+      --states N                           dense controllers of N states, 1 to 12, with one or two
+                                           inputs, in loops and out of them
       --mistake CODE                       planted: no-equation, frame, improper ...
 )";
 

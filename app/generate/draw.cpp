@@ -153,10 +153,12 @@ class Artist {
   void use_scalar(int i) {
     if (o_.twins && i > 0) return;
     if (dice_.chance(25)) plan_.loads.push_back({input(1), {i, "child"}});
-    if (o_.controllers && dice_.chance(25)) {
+    if (o_.controllers && o_.states > 0) {
+      dense_control(i, [&](int block) { return ControlPoint{{block, "child"}, {}}; });
+    } else if (o_.controllers && dice_.chance(25)) {
       const bool acceleration = dice_.chance(50);
       plan_.controls.push_back(control(acceleration, i));
-      plan_.controls.back().at = {i, "child"};
+      plan_.controls.back().at = {{{i, "child"}, {}}};
     }
     if (!dice_.chance(35)) return;
     if (dice_.chance(50))
@@ -182,8 +184,54 @@ class Artist {
       c.C[0].push_back(dice_.fraction() * Ratio(acceleration ? 1 : 64, acceleration ? 8 : 8));
     }
     if (n == 2) c.A[0][1] = dice_.fraction(), c.A[1][0] = -c.A[0][1];
-    c.D = acceleration ? dice_.octaves(-3, 1) : dice_.octaves(0, 4);
+    c.D = {{acceleration ? dice_.octaves(-3, 1) : dice_.octaves(0, 4)}};
     return c;
+  }
+
+  /// A dense controller at every other body: around its position (spring-masses), around one or two
+  /// accelerations, or out of the loops. Of four one is stable, one unstable, one has poles at 0.
+  template <class Place>
+  void dense_control(int i, Place place) {
+    if (!dice_.chance(plan_.controls.empty() ? 80 : 40)) return;
+    const bool scalar = o_.family == Family::scalar;
+    const int kind = scalar ? dice_.below(3) : dice_.between(1, 2);
+    Control c{.name = fresh("K"), .block = i};
+    c.at = {place(i)};
+    if (kind == 0) {
+      fill(c, Ratio(8), dice_.octaves(0, 4));
+    } else {
+      c.law = kind == 1 ? Control::Law::acceleration : Control::Law::filter;
+      if (dice_.chance(50)) c.at.push_back(place(scalar ? dice_.below(o_.bodies) : any_body()));
+      fill(c, Ratio(1, 8), dice_.octaves(-3, 1));
+    }
+    plan_.controls.push_back(c);
+    if (kind == 2)
+      read({.of = PlannedReading::Of::control, .point = {int(plan_.controls.size()) - 1, ""}},
+           static_cast<int>(c.size()));
+  }
+
+  /// Matrices of the size of `at`. The symmetric part of D is positive: the loop is never singular.
+  void fill(Control& c, const Ratio& gain, const Ratio& direct) {
+    const auto n = static_cast<std::size_t>(o_.states), m = c.at.size();
+    const auto matrix = [&](std::size_t rows, std::size_t cols, const Ratio& size) {
+      RatioMatrix M(rows, std::vector<Ratio>(cols));
+      for (auto& row : M)
+        for (Ratio& x : row) x = dice_.fraction() * size;
+      return M;
+    };
+    c.A = matrix(n, n, 4);
+    const int kind = dice_.below(4);
+    const std::size_t chain = std::min(n, static_cast<std::size_t>(dice_.between(1, 2)));
+    for (std::size_t i = 0; i < n; ++i) {
+      if (kind < 2) c.A[i][i] = c.A[i][i] - Ratio(4 * o_.states, kind == 0 ? 1 : 2);
+      if (kind == 2) c.A[i][i] = c.A[i][i] + Ratio(2 * o_.states);
+      if (kind != 3 || i >= chain) continue;
+      c.A[i].assign(n, Ratio(0));  // poles at 0: integrators, one after the other
+      if (i > 0) c.A[i][i - 1] = 2;
+    }
+    c.B = matrix(n, m, 1), c.C = matrix(m, n, gain), c.D = matrix(m, m, direct * Ratio(1, 2));
+    for (std::size_t i = 0; i < m; ++i)
+      for (std::size_t j = 0; j <= i; ++j) c.D[i][j] = i == j ? direct : -c.D[j][i];
   }
 
   // --- six degrees of freedom per junction ---
@@ -291,7 +339,7 @@ class Artist {
     PlannedBlock h{.name = fresh("h"), .base = b.base};
     h.joint = PlannedJoint{.turns = dice_.chance(65), .axis = dice_.direction()};
     const int index = static_cast<int>(plan_.blocks.size());
-    const int kind = dice_.below(o_.controllers ? 4 : 3);
+    const int kind = dice_.below(o_.controllers && o_.states == 0 ? 4 : 3);
     if (kind == 3) {
       plan_.controls.push_back(control(false, index));
     } else if (kind > 0) {
@@ -350,10 +398,11 @@ class Artist {
   void use_body(int i) {
     const PlannedPart along{PlannedPart::Kind::along, dice_.direction()};
     if (dice_.chance(30)) plan_.loads.push_back({input(1), {i, "T"}, along});
-    if (o_.controllers && dice_.chance(20)) {
+    if (o_.controllers && o_.states > 0) {
+      dense_control(i, [&](int block) { return ControlPoint{{block, "T"}, dice_.direction()}; });
+    } else if (o_.controllers && dice_.chance(20)) {
       plan_.controls.push_back(control(true, i));
-      plan_.controls.back().at = {i, "T"};
-      plan_.controls.back().along = dice_.direction();
+      plan_.controls.back().at = {{{i, "T"}, dice_.direction()}};
     }
     if (dice_.chance(30)) slosh(i);
     if (dice_.chance(30))

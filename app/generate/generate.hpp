@@ -21,6 +21,7 @@ struct GenerateOptions {
   Damping damping = Damping::some;
   int stiffness_low = 3, stiffness_high = 9;  ///< powers of two [N/m, N m/rad]
   bool controllers = true;
+  int states = 0;            ///< of each controller, which is dense then; 0: one or two
   bool twins = false;        ///< every second part a copy of its neighbour: removable states
   std::string mistake = {};  ///< code of a mistake to plant; "": none
 };

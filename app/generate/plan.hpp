@@ -75,19 +75,26 @@ struct PlannedBlock {
   int size() const { return spring ? 1 : 6; }
 };
 
-/// Controller of one input and one output: xdot = A x + B e, v = C x + D e.
+/// A point's one direction: of a spring-mass's end, or `along` of a body's point.
+struct ControlPoint {
+  PlannedPoint point;
+  std::optional<Vec3> along = {};
+};
+
+/// Controller of as many inputs as outputs: xdot = A x + B e, v = C x + D e.
 struct Control {
   enum class Law {
-    position,     ///< e: stretch or angle of `block`; v pulls it back
-    acceleration  ///< e: acceleration at `at` (along `along`); v pushes against it there
+    position,      ///< e: stretch or angle of `block`; v pulls it back
+    acceleration,  ///< e: accelerations at `at`; v pushes against them there
+    filter         ///< e: accelerations at `at`; v is read only
   };
   std::string name;
   Law law = Law::position;
-  int block = -1;        ///< position
-  PlannedPoint at = {};  ///< acceleration, and a spring-mass's child for position
-  std::optional<Vec3> along = {};
-  RatioMatrix A = {}, B = {}, C = {};
-  Ratio D = {};
+  int block = -1;                     ///< position
+  std::vector<ControlPoint> at = {};  ///< one per input; of a spring-mass's position its child
+  RatioMatrix A = {}, B = {}, C = {}, D = {};
+
+  std::size_t size() const { return D.size(); }
 };
 
 /// One closure in addition to the tree: `point` moves with `with` (turned by T), or is fixed.
@@ -113,10 +120,11 @@ struct Load {
 };
 
 struct PlannedReading {
-  enum class Of { acceleration, position, relative, support, reaction };
+  enum class Of { acceleration, position, relative, support, reaction, control };
   std::string output = {};
   Of of = Of::acceleration;
-  PlannedPoint point = {};  ///< `relative`: block; `support`: its parent; `reaction`: held point
+  PlannedPoint point = {};  ///< `relative`: block; `support`: its parent; `reaction`: held point;
+                            ///< `control`: v of the one of this index
   PlannedPart part = {};
 };
 

@@ -196,22 +196,40 @@ class PlanWriter {
                        {"A", rows(c.A)},
                        {"B", rows(c.B)},
                        {"C", rows(c.C)},
-                       {"D", rows(RatioMatrix{{c.D}})}});
+                       {"D", rows(c.D)}});
     const Json out = {c.name, "out"};
-    PlannedPart direction;
-    if (c.along) direction = {PlannedPart::Kind::along, *c.along};
-    if (c.law == Control::Law::acceleration) {
-      Json e = term(signal(c.at, "accel"));
-      if (c.along) e["factors"] = Json::array({part(direction)});
-      equation({c.name, "in"}, Json::array({e}));
-      return equation(signal(c.at, "force"), Json::array({term(out, -1)}), direction, true);
-    }
+    if (c.law != Control::Law::position) return around(c);
     const PlannedBlock& b = block(c.block);
     equation({c.name, "in"}, Json::array({term(position(c.block))}));
     if (b.joint)
       equation({b.name, "", "force"}, Json::array({term(out)}));
     else
-      equation(signal(c.at, "force"), Json::array({term(out, -1)}), {}, true);
+      equation(signal(c.at.front().point, "force"), Json::array({term(out, -1)}), {}, true);
+  }
+
+  /// The equations of a controller that measures accelerations.
+  void around(const Control& c) {
+    Json in = Json::array();
+    for (std::size_t j = 0; j < c.size(); ++j) {
+      Json e = term(signal(c.at[j].point, "accel")), factors = Json::array();
+      RatioMatrix column(c.size(), {Ratio(0)});
+      column[j][0] = 1;
+      if (c.size() > 1) factors.push_back(Json{{"matrix", rows(column)}});
+      if (c.at[j].along) factors.push_back(part({PlannedPart::Kind::along, *c.at[j].along}));
+      if (!factors.empty()) e["factors"] = factors;
+      in.push_back(e);
+    }
+    equation({c.name, "in"}, in);
+    if (c.law == Control::Law::filter) return;
+    for (std::size_t j = 0; j < c.size(); ++j) {
+      Json v = term({c.name, "out"}, -1);
+      RatioMatrix row(1, std::vector<Ratio>(c.size()));
+      row[0][j] = 1;
+      if (c.size() > 1) v["factors"] = Json::array({Json{{"matrix", rows(row)}}});
+      PlannedPart direction;
+      if (c.at[j].along) direction = {PlannedPart::Kind::along, *c.at[j].along};
+      equation(signal(c.at[j].point, "force"), Json::array({v}), direction, true);
+    }
   }
 
   /// A closure at `point`: its acceleration is given, and the reaction acts on the other side.
@@ -238,6 +256,9 @@ class PlanWriter {
         t["read"] = "position";
         break;
       case PlannedReading::Of::relative: t = term(position(p.block)); break;
+      case PlannedReading::Of::control:
+        t = term({plan_.controls[static_cast<std::size_t>(p.block)].name, "out"});
+        break;
       case PlannedReading::Of::support: t = term(signal(p, "force")); break;
       case PlannedReading::Of::reaction:
         t = term(signal(p, "force"));
