@@ -50,7 +50,7 @@ Vector3d draw_offset(Rng& rng, const HalfTie& t, const Matrix3d& turn) {
 }
 
 void draw_source(Rng& rng, Sketch& s, HalfTie& t, const Vector3d& target) {
-  t.mask = draw_mask(rng);
+  t.mask = t.slide ? 63 - (1 << rng.below(3)) : draw_mask(rng);
   t.by_halves = rng.chance(0.5);
   if (t.source >= 0)
     t.source_point =
@@ -97,13 +97,14 @@ void write(const Sketch& s, const HalfTie& t, const DualPort<6>& P, const DualPo
 
 }  // namespace
 
-Sketch draw(Rng& rng, bool flexible) {
+Sketch draw(Rng& rng, bool flexible, bool slides) {
   Sketch s;
   const int bodies = 2 + rng.below(4), loops = 1 + rng.below(2);
   for (int i = 0; i < bodies; ++i) s.bodies.push_back(draw_body(rng, flexible));
   for (int i = 0; i < bodies; ++i) {
     if (i == 0 && rng.chance(0.5)) continue;  // the first one is free
     HalfTie t{.target = i, .source = i == 0 ? -1 : rng.below(i)};
+    t.slide = slides && t.source >= 0 && rng.chance(0.5);
     draw_source(rng, s, t, body(s, i).place);
   }
   for (int i = 0; i < loops; ++i) {
@@ -117,6 +118,18 @@ Sketch draw(Rng& rng, bool flexible) {
   s.load_point = add_point(rng, body(s, s.load), body(s, s.load).place + vector(rng, 1));
   s.seen_point = add_point(rng, body(s, s.seen), body(s, s.seen).place + vector(rng, 1));
   return s;
+}
+
+void tie_again(Sketch& s, HalfTie& t, int mask) {
+  t.mask = mask;
+  if (t.source < 0) return;
+  const Body& target = body(s, t.target);
+  Body& source = body(s, t.source);
+  Vector3d place = target.place;
+  if (t.target_point >= 0)
+    place += target.turn * target.points[static_cast<std::size_t>(t.target_point)].PC;
+  source.points[static_cast<std::size_t>(t.source_point)].PC =
+      source.turn.transpose() * (place - source.place);
 }
 
 void draw_momenta(Rng& rng, Sketch& s, double size) {
@@ -163,6 +176,14 @@ Diagram diagram(const Sketch& s) {
   for (const HalfTie& t : s.ties) {
     const DualPort<6> P = port(t.target, t.target_point);
     if (t.target_point < 0) held[static_cast<std::size_t>(t.target)] = 1;
+    if (t.slide) {
+      const Vector3d axis((t.mask & 1) == 0, (t.mask & 2) == 0, (t.mask & 4) == 0);
+      const auto& carried = handles[static_cast<std::size_t>(t.target)];
+      titop::slide(d, "s" + std::to_string(t.target), carried, port(t.source, t.source_point),
+                   Rotation::matrix(turn(s, t).transpose()), axis)
+          .force = 0;
+      continue;
+    }
     if (t.source < 0) {
       write(s, t, P, nullptr, false), write(s, t, P, nullptr, true);
     } else {

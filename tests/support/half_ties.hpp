@@ -52,6 +52,7 @@ struct Body {
 struct HalfTie {
   int target = 0, target_point = -1, source = -1, source_point = -1, mask = 63;
   bool by_halves = false;  ///< three directions are one equation
+  bool slide = false;      ///< written as a joint: all directions but one translation
 
   bool ties(int direction) const { return (mask >> direction & 1) != 0; }
 };
@@ -70,8 +71,11 @@ inline Matrix3d turn(const Sketch& s, const HalfTie& t) {
   return body(s, t.target).turn.transpose() * body(s, t.source).turn;
 }
 
-/// A tree of two to five bodies, closed once or twice; ties of any directions at any place.
-Sketch draw(Rng& rng, bool flexible);
+/// A tree of two to five bodies, closed once or twice; ties of any directions at any place. With
+/// `slides` half of the tree's ties are those of slides.
+Sketch draw(Rng& rng, bool flexible, bool slides = false);
+/// These directions in place of the tie's own, at one place.
+void tie_again(Sketch& sketch, HalfTie& tie, int mask);
 /// A momentum of up to `size` at the parent or at a point of every other body, and of the first.
 void draw_momenta(Rng& rng, Sketch& sketch, double size);
 /// The same with all momenta reversed.
