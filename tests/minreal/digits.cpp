@@ -1,6 +1,11 @@
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <titop/titop.hpp>
+#include <utility>
+#include <vector>
+
+#include "support/rng.hpp"
 
 /// A smaller model may be right in exact arithmetic, and cancel more in double.
 
@@ -124,6 +129,89 @@ TEST_CASE("slow integrators in series keep their digits above and at their rates
       CHECK(error(model) <= 1e-9);
     }
   }
+}
+
+namespace {
+
+/// Lags and oscillators in a row, with poles from 1e-9 to 1e3 rad/s in any order, and two equal
+/// lags beside them of which only the difference is seen. Outputs: that, and the end of the row.
+struct RandomSeries {
+  explicit RandomSeries(std::uint64_t seed) : rng(seed) {
+    const auto u = d.input("u");
+    auto last = add(u);
+    const int more = 1 + rng.below(4), side = rng.below(more);
+    for (int i = 0; i < more; ++i) {
+      if (i == side) add_unseen(last.out);
+      last = add(last.out);
+    }
+    d.output("y") = last.out;
+  }
+  std::complex<double> exact(std::complex<double> s) const {
+    std::complex<double> G = 1;
+    for (const auto& [w, xi] : parts)
+      G *= xi < 0 ? w / (s + w) : w * w / (s * (s + 2 * xi * w) + w * w);
+    return G;
+  }
+  double fastest() const {  // rad/s
+    double most = 0;
+    for (const auto& [w, xi] : parts) most = std::max(most, w);
+    return most;
+  }
+
+  titop_test::Rng rng;
+  Diagram d{"series"};
+  std::vector<std::pair<double, double>> parts;  ///< rad/s and damping ratio, or -1 for a lag
+
+ private:
+  template <class Signal>
+  Lti::Handle add(const Signal& from) {
+    const double w = std::pow(10, rng.between(-9, 3)), xi = rng.chance(0.3) ? 0.3 : -1;
+    parts.emplace_back(w, xi);
+    return add(from, w, xi);
+  }
+  template <class Signal>
+  Lti::Handle add(const Signal& from, double w, double xi) {
+    const auto one = [](double x) { return Eigen::MatrixXd::Constant(1, 1, x); };
+    auto part = d.add("p" + std::to_string(count_++),
+                      xi < 0 ? Lti{.A = one(-w), .B = one(w), .C = one(1)}
+                             : Lti{.A = Eigen::Matrix2d{{0, w}, {-w, -2 * xi * w}},
+                                   .B = Eigen::Vector2d(0, w),
+                                   .C = Eigen::RowVector2d(1, 0)});
+    part.in = from;
+    return part;
+  }
+  template <class Signal>
+  void add_unseen(const Signal& from) {
+    const double w = std::pow(10, rng.between(-9, 3));
+    const auto one = add(from, w, -1), other = add(from, w, -1);
+    d.output("none") = one.out - other.out;
+  }
+  int count_ = 0;
+};
+
+}  // namespace
+
+TEST_CASE("minimal models of 100 series are as accurate as before, to a decade above all poles") {
+  int smaller = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    CAPTURE(seed);
+    const RandomSeries series(seed);
+    const System system = compile(series.d);
+    StateSpace written;
+    system.write(written);
+    const StateSpace& model = system.state_space();
+    smaller += model.order() < written.order();
+    for (int decade = -9; decade <= 3; ++decade) {
+      const std::complex<double> s(0, 3.7 * std::pow(10, decade)), exact = series.exact(s);
+      if (s.imag() > 10 * series.fastest()) continue;
+      CAPTURE(decade);
+      const auto error = [&](const StateSpace& m) {
+        return std::abs(m.transfer(s)(1, 0) - exact) / std::abs(exact);
+      };
+      CHECK(error(model) <= std::max(10 * error(written), 1e-9));
+    }
+  }
+  CHECK(smaller >= 90);
 }
 
 TEST_CASE("states leave where that costs no digits") {
