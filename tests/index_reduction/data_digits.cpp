@@ -149,27 +149,63 @@ TEST_CASE("data digits: freed by joints, along oblique axes, through points with
             .empty());
 }
 
+namespace {
+
+/// Held at its parent, its child's acceleration prescribed in the directions of a set.
+Diagram driven(const FlexibleBody& body, int set) {
+  Diagram d{"driven"};
+  auto b = d.add("b", body);
+  ground(b);
+  for (int i = 0; i < 6; ++i) {
+    if (!is_in(set, i)) continue;
+    const Vector3d r = Vector3d::Unit(i % 3);
+    auto u = d.input(fmt::format("u{}", i));
+    i < 3 ? b.child.accel.linear.along(r) = u : b.child.accel.angular.along(r) = u;
+  }
+  release(b.child);
+  d.output("f", 6) = b.child.force;
+  return d;
+}
+
+}  // namespace
+
 TEST_CASE("data digits: a child driven where its modes do not move it") {
   ModalData data = modal_data(boom(4));  // two bendings in each plane
   for (const int row : {0, 3}) data.children[0].Phi_C.row(row).setConstant(1e-15);
   for (int set = 1; set < 64; ++set) {
     CAPTURE(set);
-    Diagram d{"driven"};
-    auto b = d.add("b", FlexibleBody{data});
-    ground(b);
-    for (int i = 0; i < 6; ++i) {
-      if (!is_in(set, i)) continue;
-      const Vector3d r = Vector3d::Unit(i % 3);
-      auto u = d.input(fmt::format("u{}", i));
-      i < 3 ? b.child.accel.linear.along(r) = u : b.child.accel.angular.along(r) = u;
-    }
-    release(b.child);
-    d.output("f", 6) = b.child.force;
     const bool still = is_in(set, 0) || is_in(set, 3);
-    const Error e = compile_error(d);
+    const Error e = compile_error(driven(FlexibleBody{data}, set));
     CHECK(still == says(e, Code::improper, {"b.child(\"C\")"}));
     CHECK(still != e.mistakes().empty());
   }
+}
+
+TEST_CASE("data digits: forces that only residual vectors can carry") {
+  Beam few = boom(2), whole = boom();  // one bending in each plane, and all modes
+  few.modes.xi = whole.modes.xi = {};
+  Beam carried = few;
+  carried.modes.residual = {"C"};
+  const MatrixXd Phi = modal_data(few).children.front().Phi_C;
+  int refused = 0;
+  for (int set = 1; set < 64; ++set) {
+    CAPTURE(set);
+    std::vector<int> rows;
+    for (int i = 0; i < 6; ++i)
+      if (is_in(set, i)) rows.push_back(i);
+    const Eigen::JacobiSVD<MatrixXd> svd(Phi(rows, Eigen::all));
+    const bool moved =
+        rows.size() <= 2 && svd.singularValues().minCoeff() > 1e-6 * Phi.cwiseAbs().maxCoeff();
+    const Error e = compile_error(driven(FlexibleBody{few}, set));
+    CHECK(moved == e.mistakes().empty());
+    refused += !e.mistakes().empty();
+    const System some = compile(driven(FlexibleBody{carried}, set)),
+                 all = compile(driven(FlexibleBody{whole}, set));
+    const std::complex<double> s(0, 0.1);  // the first mode is at 52 rad/s
+    const Eigen::MatrixXcd exact = all.transfer(s);
+    CHECK((some.transfer(s) - exact).norm() <= 1e-6 * exact.norm());
+  }
+  CHECK(refused == 63 - 8);
 }
 
 TEST_CASE("data digits: of a body with a damping matrix, and of values in rows of zeros") {
