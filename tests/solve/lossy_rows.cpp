@@ -31,6 +31,38 @@ TEST_CASE("lossy rows: the transfer of every length, damping and causality is ri
   CHECK(count.refused == 0);
 }
 
+TEST_CASE("lossy rows: positions of the tip and forces on the wall, by Python in 80 digits") {
+  // K + C s + M s^2 of the row, eliminated from the wall on; a force of 1 N on the tip.
+  struct {
+    int n;
+    double omega;
+    Double tip, wall;
+  } const rows[] = {{100,
+                     15.93,
+                     {-2.2498497274964244e-3, -1.2045955621989646e-3},
+                     {1.6136108251871849e-28, 1.4111847106416609e-28}},
+                    {300,
+                     15.93,
+                     {-2.2498497274964244e-3, -1.2045955621989646e-3},
+                     {-3.8969685096521795e-84, 2.4671993977000509e-84}},
+                    {300,
+                     8,
+                     {-6.5825469841364579e-3, -4.4063459770586584e-3},
+                     {-2.9205546226479089e-58, 6.0030654193830491e-58}}};
+  for (const auto& row : rows) {
+    const System system = compile(row_of(row.n).diagram());
+    const Double s(0, row.omega);
+    for (const Precision precision : {Precision::standard, Precision::refined, Precision::twofold,
+                                      Precision::digits50, Precision::as_needed}) {
+      CAPTURE(row.n);
+      CAPTURE(row.omega);
+      const Eigen::MatrixXcd G = system.transfer(s, precision);
+      CHECK(std::abs(G(0, 0) - row.wall) <= 1e-12 * std::abs(row.wall));
+      CHECK(std::abs(G(1, 0) - s * s * row.tip) <= 1e-12 * std::abs(s * s * row.tip));
+    }
+  }
+}
+
 TEST_CASE("lossy rows: of two thousand masses") {
   Count count;
   const LossyRow row = row_of(2000);
