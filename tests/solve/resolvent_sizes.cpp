@@ -4,6 +4,7 @@
 #include <titop/compiler/solve/scalar.hpp>
 
 #include "generate/diagrams/lti.hpp"
+#include "solve/exact_numbers.hpp"
 #include "support/rng.hpp"
 
 /// (s - A)^-1 in every scalar type, 0 to 12 states: the residual (s - A) x - r in 100 digits
@@ -13,32 +14,14 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
+using solve_test::Exact;
+using solve_test::exact;
 using titop::detail::Resolvent;
 using titop::generate::LtiKind;
 using titop::solve::Dense;
 using titop::solve::lift;
 using titop::solve::Scalar;
 using titop_test::Rng;
-using Exact = boost::multiprecision::cpp_complex_100;
-using Real = boost::multiprecision::cpp_bin_float_100;
-
-Real exact_part(double x) { return Real(x); }
-Real exact_part(long double x) { return Real(x); }
-Real exact_part(const titop::solve::DoubleDouble& x) {
-  const double high = static_cast<double>(x);
-  return Real(high) + Real(static_cast<double>(x - titop::solve::DoubleDouble(high)));
-}
-template <class Other>
-Real exact_part(const Other& x) {
-  return Real(x);
-}
-Exact exact(double x) { return Exact(x); }
-template <class T>
-Exact exact(const T& z) {
-  using Part = std::decay_t<decltype(z.real())>;
-  return Exact(exact_part(Part(z.real())), exact_part(Part(z.imag())));
-}
-
 /// Over the bound's right side without its constant.
 template <class T>
 double residual_over_bound(const MatrixXd& A, const T& s, const Dense<T>& x, const Dense<T>& r) {
