@@ -1,4 +1,4 @@
-// Momenta in trees and closed chains: maximal coordinates, and reversed momenta.
+// Momenta and rotors in trees and closed chains: maximal coordinates, and reversed momenta.
 #include <doctest/doctest.h>
 
 #include "support/half_ties.hpp"
@@ -6,9 +6,20 @@
 using namespace half_ties;
 using namespace titop;
 
-TEST_CASE("momenta in 200 trees and closed chains: by hand, and G(h)' = G(-h)") {
+namespace {
+
+bool has_rotor(const Sketch& sketch) {
+  for (const Body& b : sketch.bodies)
+    for (const Momentum& m : b.momenta)
+      if (m.rotor) return true;
+  return false;
+}
+
+}  // namespace
+
+TEST_CASE("momenta and rotors in 200 trees and closed chains: by hand, and G(h)' = G(-h)") {
   Rng rng(20261130);
-  int judged = 0, gyroscopic = 0, closed = 0;
+  int judged = 0, gyroscopic = 0, closed = 0, rotors = 0;
   for (int i = 0; i < 200; ++i) {
     CAPTURE(i);
     Sketch sketch = draw(rng, i % 2 == 1);
@@ -20,6 +31,7 @@ TEST_CASE("momenta in 200 trees and closed chains: by hand, and G(h)' = G(-h)") 
     if (o.gap < 1e-4) continue;  // near singular
     ++judged;
     closed += i % 3 != 0;
+    rotors += has_rotor(sketch);
     const System ahead = compile(diagram(sketch)), back = compile(diagram(reversed(sketch)));
     bool one_way = false;
     for (const std::complex<double> s : {std::complex<double>(0.3, 1.3), {0.5, 6}}) {
@@ -33,5 +45,6 @@ TEST_CASE("momenta in 200 trees and closed chains: by hand, and G(h)' = G(-h)") 
   }
   CHECK(judged >= 180);
   CHECK(closed >= 110);
+  CHECK(rotors >= 80);
   CHECK(2 * gyroscopic > judged);  // most of them are not reciprocal as they are
 }

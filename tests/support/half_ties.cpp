@@ -132,6 +132,21 @@ void tie_again(Sketch& s, HalfTie& t, int mask) {
       source.turn.transpose() * (place - source.place);
 }
 
+namespace {
+
+Spinning draw_rotor(Rng& rng) {
+  Spinning r;
+  r.mass = rng.between(0.1, 1);
+  r.transverse = rng.between(0.05, 0.3);
+  r.axial = rng.between(0.5, 1.9) * r.transverse;
+  r.held = rng.chance(0.3);
+  r.friction = rng.chance(0.5) ? rng.between(0.1, 1) : 0;
+  r.centre = vector(rng, 0.3);
+  return r;
+}
+
+}  // namespace
+
 void draw_momenta(Rng& rng, Sketch& s, double size) {
   for (std::size_t i = 0; i < s.bodies.size(); ++i) {
     if (i > 0 && rng.chance(0.5)) continue;
@@ -139,6 +154,7 @@ void draw_momenta(Rng& rng, Sketch& s, double size) {
     const int point = rng.below(static_cast<int>(b.points.size()) + 1) - 1;
     const double sign = rng.sign(), h = sign * rng.between(0.2, 1) * size;
     b.momenta.push_back({point, h, vector(rng, 1)});
+    if (point >= 0 && rng.chance(0.5)) b.momenta.back().rotor = draw_rotor(rng);
   }
 }
 
@@ -147,6 +163,27 @@ Sketch reversed(Sketch s) {
     for (Momentum& m : b.momenta) m.h = -m.h;
   return s;
 }
+
+namespace {
+
+void add(Diagram& d, const Momentum& m, const DualPort<6>& P) {
+  if (!m.rotor) return titop::momentum(P, m.h, m.axis);
+  const Spinning& r = *m.rotor;
+  auto rotor =
+      d.add("r" + std::to_string(d.graph().nodes.size()), titop::Rotor{.mass = r.mass,
+                                                                       .axial = r.axial,
+                                                                       .transverse = r.transverse,
+                                                                       .axis = m.axis,
+                                                                       .momentum = m.h,
+                                                                       .PA = r.centre});
+  mount(rotor, P);
+  if (r.held)
+    rotor.accel = 0;
+  else
+    rotor.torque = r.friction * rotor.speed;
+}
+
+}  // namespace
 
 Diagram diagram(const Sketch& s) {
   Diagram d{"half ties"};
@@ -195,8 +232,7 @@ Diagram diagram(const Sketch& s) {
   for (std::size_t i = 0; i < held.size(); ++i)
     if (!held[i]) release(handles[i]);
   for (std::size_t i = 0; i < s.bodies.size(); ++i)
-    for (const Momentum& m : s.bodies[i].momenta)
-      titop::momentum(port(static_cast<int>(i), m.point), m.h, m.axis);
+    for (const Momentum& m : s.bodies[i].momenta) add(d, m, port(static_cast<int>(i), m.point));
   port(s.load, s.load_point).force += U;
   d.output("rate", 6) = port(s.seen, s.seen_point).rate;
   return d;
@@ -204,10 +240,16 @@ Diagram diagram(const Sketch& s) {
 
 namespace {
 
-/// First row of each body's coordinates: motion of its parent point, modes; and their number.
+/// First row of each body's coordinates (motion of its parent point, modes), of the rotors' angles,
+/// and the number of all.
 std::vector<Index> first_rows(const Sketch& s) {
   std::vector<Index> first{0};
   for (const Body& b : s.bodies) first.push_back(first.back() + 6 + b.modes());
+  Index rotors = 0;
+  for (const Body& b : s.bodies)
+    rotors += std::count_if(b.momenta.begin(), b.momenta.end(),
+                            [](const Momentum& m) { return m.rotor.has_value(); });
+  first.push_back(first.back() + rotors);
   return first;
 }
 
@@ -234,6 +276,26 @@ MatrixXd gyroscopic(const Sketch& s, const std::vector<Index>& first) {
         G.col(k) -= omega.transpose() * h.cross(Vector3d(omega.col(k)));
     }
   return G;
+}
+
+/// Masses of the rotors, and their friction.
+void add_rotors(const Sketch& s, const std::vector<Index>& first, MatrixXd& M, MatrixXd& G) {
+  Index own = first[s.bodies.size()];
+  for (std::size_t i = 0; i < s.bodies.size(); ++i)
+    for (const Momentum& m : s.bodies[i].momenta) {
+      if (!m.rotor) continue;
+      const Spinning& r = *m.rotor;
+      const Vector3d a = m.axis.normalized();
+      const MatrixXd X = motion(s, first, static_cast<int>(i), m.point), turn = X.bottomRows(3);
+      MatrixXd move = X.topRows(3), spin = a.transpose() * turn;
+      for (Index k = 0; k < X.cols(); ++k) move.col(k) += Vector3d(turn.col(k)).cross(r.centre);
+      if (!r.held) spin(0, own) += 1;
+      M += r.mass * move.transpose() * move + r.axial * spin.transpose() * spin +
+           r.transverse * turn.transpose() * (Matrix3d::Identity() - a * a.transpose()) * turn;
+      G(own, own) += r.friction;
+      if (r.held) M(own, own) = 1;  // at rest
+      ++own;
+    }
 }
 
 /// One row per direction that is tied.
@@ -270,7 +332,8 @@ Oracle oracle(const Sketch& s) {
     M.block(f + 6, f + 6, modes, modes).setIdentity();
     K.block(f + 6, f + 6, modes, modes) = b.omega.cwiseAbs2().asDiagonal();
   }
-  const MatrixXd G = gyroscopic(s, first);
+  MatrixXd G = gyroscopic(s, first);
+  add_rotors(s, first, M, G);
   const Eigen::JacobiSVD<MatrixXd> svd(constraints(s, first), Eigen::ComputeFullV);
   const VectorXd& sigma = svd.singularValues();
   const Index rank = (sigma.array() > 1e-9 * sigma(0)).count();

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <complex>
+#include <optional>
 #include <string>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/titop.hpp>
@@ -24,11 +25,20 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using titop_test::Rng;
 
-/// Angular momentum of a body at a point, about an axis in the body's frame. Point -1: the parent.
+/// Rotor at a point of a body, balanced about an axis in the body's frame.
+struct Spinning {
+  double mass = 1, axial = 1, transverse = 1, friction = 0;
+  bool held = false;                   ///< at its speed; otherwise friction alone brakes it
+  Vector3d centre = Vector3d::Zero();  ///< of mass, from the point
+};
+
+/// Angular momentum of a body at a point, about an axis in the body's frame: of a rotor there, or
+/// of one whose mass is in that of the body. Point -1: the parent.
 struct Momentum {
   int point = -1;
   double h = 0;
   Vector3d axis = Vector3d::UnitZ();
+  std::optional<Spinning> rotor = {};
 };
 
 /// At its place in the world: components of its frame to those of the world, parent point.
@@ -76,7 +86,8 @@ inline Matrix3d turn(const Sketch& s, const HalfTie& t) {
 Sketch draw(Rng& rng, bool flexible, bool slides = false);
 /// These directions in place of the tie's own, at one place.
 void tie_again(Sketch& sketch, HalfTie& tie, int mask);
-/// A momentum of up to `size` at the parent or at a point of every other body, and of the first.
+/// A momentum of up to `size` at the parent or at a point of every other body, and of the first;
+/// half of those at points are of rotors.
 void draw_momenta(Rng& rng, Sketch& sketch, double size);
 /// The same with all momenta reversed.
 Sketch reversed(Sketch sketch);
