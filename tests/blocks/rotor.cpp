@@ -155,3 +155,33 @@ TEST_CASE("momentum as a parameter: from 0 and back") {
   CHECK((at_0.update({{"h", 40}}).transfer(s) - with).norm() <= 1e-13 * with.norm());
   CHECK((at_40.update({{"h", 0}}).transfer(s) - without).norm() <= 1e-13 * without.norm());
 }
+
+TEST_CASE("a momentum that is a parameter occurs twice, at any port and about any axis") {
+  for (const Vector3d& axis : {Vector3d(0, 1, 0), Vector3d(1, -2, 2)})
+    for (const bool at_tip : {false, true}) {
+      CAPTURE(at_tip);
+      Diagram d{"bias"};
+      const Param h = d.param("h", 20);
+      auto hub = d.add("hub", RigidBody{.mass = 90,
+                                        .inertia = Vector3d(40, 50, 60).asDiagonal(),
+                                        .children = {{"B", {0.5, 0, 0}}}});
+      auto boom = d.add("boom", FlexibleBody{Beam{.length = 2,
+                                                  .section = rectangle(0.06, 0.04),
+                                                  .material = {.E = 70e9, .nu = 0.33, .rho = 2700},
+                                                  .elements = 1}});
+      mount(boom, hub.child);
+      if (at_tip)
+        momentum(boom.child, h, axis);
+      else
+        momentum(hub.parent, h, axis);
+      hub.parent.force += -1.0 * d.input("U", 6);
+      d.output("accel", 6) = hub.parent.accel;
+      const System system = compile(d);
+      const Lft f = lft(system, {{"h", between(-30, 40)}});
+      REQUIRE(f.deltas().size() == 1);
+      CHECK(f.deltas()[0].size == 2);
+      const std::complex<double> s(0.4, 1.3);
+      const Eigen::MatrixXcd right = system.update({{"h", -7}}).transfer(s);
+      CHECK((f.at({{"h", -7}}).transfer(s) - right).norm() <= 1e-11 * right.norm());
+    }
+}
