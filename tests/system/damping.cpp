@@ -82,3 +82,26 @@ TEST_CASE("a mode of more than five times its body's damping, unless something e
   CHECK(told(by_damper, "0.003") == 0);
   CHECK(!in_table(by_damper, "xi"));
 }
+
+TEST_CASE("a mode of two bodies: above five times the larger damping ratio, not the smaller one") {
+  // On a hub without mass both bend alike, free, of 98 kg 96 in the mode: 10 sqrt(49) rad/s, and xi
+  // is sqrt(49) times the mean of both.
+  const auto two_booms = [](double first, double second) {
+    Diagram d{"two booms"};
+    auto hub = d.add("hub", RigidBody{.mass = 0, .children = {{"1"}, {"2"}}});
+    mount(d.add("a", boom(first, 1, 48)), hub.child("1"));
+    mount(d.add("b", boom(second, 1, 48)), hub.child("2"));
+    hub.parent.force = -d.input("F", 6);
+    d.output("y", 6) = hub.parent.accel;
+    return compile(d);
+  };
+  const System near = two_booms(0.002, 0.003), far = two_booms(0.002, 0.01);
+  REQUIRE(!near.poles().empty());
+  CHECK(std::abs(near.poles().back().omega - 70) <= 1e-3);
+  CHECK(std::abs(near.poles().back().damping - 7 * 0.0025) <= 1e-4);  // 0.0175 > 5 * 0.003
+  CHECK(told(near, "0.002 to 0.003") == 1);
+  CHECK(in_table(near, "xi 0.002 to 0.003"));
+  CHECK(std::abs(far.poles().back().damping - 7 * 0.006) <= 1e-3);  // 0.042 < 5 * 0.01
+  CHECK(told(far, "0.002 to 0.01") == 0);
+  CHECK(!in_table(far, "xi"));
+}
