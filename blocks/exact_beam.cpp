@@ -179,7 +179,7 @@ class ExactBeamBlock : public Block,
   MatrixXcd at(std::complex<double> s) const { return closed_form(s, {}, 1).front(); }
   std::vector<MatrixXcd> checked(std::vector<MatrixXcd> Y, std::complex<double> s) const {
     check_finite(s, type());
-    if (!(std::norm(s) < HUGE_VAL))
+    if (!std::isfinite(std::norm(s)) || !std::isfinite(std::norm(s / slow_frequency(spec_))))
       throw Error(Code::not_finite,
                   fmt::format("a {} at |s| = {}: numbers overflow", type(), std::abs(s)),
                   "take an s of smaller modulus");

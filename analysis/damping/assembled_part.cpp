@@ -7,6 +7,7 @@
 #include <titop/analysis/reduction/whole.hpp>
 #include <titop/blocks/specified.hpp>
 #include <titop/compiler/system/compile_graph.hpp>
+#include <titop/graph/closed_form.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/support/some_names.hpp>
 
@@ -148,6 +149,7 @@ std::vector<std::string> removed_states(const Graph& g, const std::vector<std::s
 }
 
 CompiledPart compile_part(const Diagram& d) {
+  require_state_space(d.graph());
   CompiledPart c{compile_graph(d.graph(), {.minimize_up_to = 0}), {}};
   const System system(c.data);
   for (const Note& n : system.notes())

@@ -76,10 +76,10 @@ struct AssemblyPort {
 /// Throws, with the names of the ports and states: unknown_name (with the valid names), bad_value
 /// (a root that is driven or is no parent port, a port without six degrees of freedom; inputs or
 /// outputs; motions without stiffness; controllers, momenta, dampers without a spring: no symmetric
-/// second-order form; a part that is not passive), duplicate_name, the errors of `compile` and of
-/// `FlexibleBody`: bad_inertia where the mass of a part is not that of a rigid body (a SpringMass
-/// has mass along its axis only: put it on the body for the others). Cost: that of `compile`, and
-/// O(n^3) for n modes.
+/// second-order form; a part that is not passive), duplicate_name, not_rational (distributed beams,
+/// ExactBeam), the errors of `compile` and of `FlexibleBody`: bad_inertia where the mass of a part
+/// is not that of a rigid body (a SpringMass has mass along its axis only: put it on the body for
+/// the others). Cost: that of `compile`, and O(n^3) for n modes.
 FlexibleBody damping_of_assembly(const Diagram& part, const std::string& root,
                                  const std::vector<AssemblyPort>& ports, const ModalDamping& xi,
                                  RootBoundary boundary = RootBoundary::clamped,

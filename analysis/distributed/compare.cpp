@@ -9,7 +9,6 @@
 #include <titop/analysis/reduction/phase_grid.hpp>
 #include <titop/graph/closed_form.hpp>
 #include <titop/graph/support/parallel.hpp>
-#include <titop/graph/support/some_names.hpp>
 
 namespace titop {
 namespace {
@@ -19,59 +18,78 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
-constexpr int kFar = 10;         ///< pairs of poles in place of all beyond twice the band
-constexpr double kStart = 1e-6;  ///< of the band's upper end, in place of lower frequencies
+constexpr int kFar = 10;  ///< pairs of poles in place of all beyond twice the band
 
-/// Frequencies of the band between which the phase of these poles, each counted twice, turns by
-/// kPhase at most.
-std::vector<double> points(const Scene& scene, const std::vector<Complex>& poles) {
-  const double high = 2 * std::numbers::pi * scene.band_hz[1];
-  const double low = std::max(2 * std::numbers::pi * scene.band_hz[0], kStart * high);
-  if (!(high > low)) return {low};
-  const Complex turn = std::conj(detail::on_ray(scene, 1));
-  detail::PhaseBand band{low, high, {}, 2 * kFar};
-  for (const Complex& p : poles)
-    if (p != 0.0 && std::abs(p) <= 2 * high) band.poles.insert(band.poles.end(), 2, p * turn);
-  return detail::phase_grid(band, detail::kPhase);
+/// The scene's band, for a finite model with these poles.
+detail::Band band_of(const Scene& scene, const std::vector<Complex>& poles) {
+  const double low = 2 * std::numbers::pi * scene.band_hz[0],
+               high = 2 * std::numbers::pi * scene.band_hz[1];
+  return {low, high, low > 0 ? 0 : detail::start_of(poles, high)};
 }
 
-/// Pairs that are nearly 0 count as much as 1e-6 of their input and output.
-MatrixXd with_floor(const MatrixXd& peak) {
-  const auto [out, in] = detail::port_sizes(peak);
-  const MatrixXd size = peak.cwiseMax(detail::kNearlyZero * out * in);
-  return (peak.array() > 0).select(size, (size.array() > 0).select(size, 1));
+/// Frequencies of the band at which two models with poles like these can differ most.
+std::vector<double> points(const Scene& scene, const detail::Band& band,
+                           const std::vector<Complex>& poles) {
+  if (!(band.high > band.low)) return {std::max(band.low, band.start)};
+  const Complex turn = std::conj(detail::on_ray(scene, 1));
+  detail::PhaseBand grid{band.low, band.high, {}, 2 * kFar};
+  for (const Complex& p : poles)
+    if (p != 0.0 && std::abs(p) <= 2 * band.high) grid.poles.insert(grid.poles.end(), 2, p * turn);
+  std::vector<double> omega = detail::phase_grid(grid, detail::kPhase);
+  for (double& x : omega) x = std::max(x, band.start);
+  return omega;
 }
 
 void require_same(const std::vector<std::string>& finite, const std::vector<std::string>& exact,
                   const char* subject) {
   if (finite != exact)
     throw Error(Code::bad_value,
-                fmt::format("the finite model and the exact one have different {}: {} ({}) and {} "
-                            "({})",
-                            subject, finite.size(), detail::some_names(finite), exact.size(),
-                            detail::some_names(exact)),
+                fmt::format("the finite model has {} {}, the exact one {}, or others",
+                            finite.size(), subject, exact.size()),
                 "compare models of the same scene, with the same inputs and outputs");
+}
+
+void require_some(const std::vector<std::string>& names, const char* subject) {
+  if (names.empty())
+    throw Error(Code::bad_value, fmt::format("the models have no {}", subject),
+                "declare an input and an output in both diagrams");
 }
 
 using TransferAt = std::function<MatrixXcd(Complex)>;
 
-ErrorBound difference(const TransferAt& finite, const System& exact, const Scene& scene,
-                      const std::vector<Complex>& poles) {
-  const std::vector<double> omega = points(scene, poles);
-  std::vector<MatrixXcd> H(omega.size()), E(omega.size());
-  detail::parallel(omega.size(), 0, [&] {
+/// Fills H and peak, and returns the differences there.
+std::vector<MatrixXcd> differences(const TransferAt& finite, const System& exact,
+                                   detail::Samples& samples) {
+  const std::size_t count = samples.omega.size();
+  samples.H.resize(count);
+  std::vector<MatrixXcd> E(count);
+  detail::parallel(count, 0, [&] {
     return [&](std::size_t k) {
-      const Complex s = detail::on_ray(scene, omega[k]);
-      H[k] = exact.transfer(s), E[k] = finite(s) - H[k];
+      samples.H[k] = exact.transfer(samples.s[k]);
+      E[k] = detail::difference(samples, finite(samples.s[k]), k);
     };
   });
+  samples.peak = MatrixXd::Zero(E.front().rows(), E.front().cols());
+  for (const MatrixXcd& H : samples.H) samples.peak = samples.peak.cwiseMax(H.cwiseAbs());
+  return E;
+}
+
+ErrorBound difference(const TransferAt& finite, const System& exact, const Scene& scene,
+                      const std::vector<Complex>& poles) {
+  require_some(exact.inputs(), "input");
+  require_some(exact.outputs(), "output");
+  const detail::Band band = band_of(scene, poles);
+  detail::Samples samples;
+  samples.omega = points(scene, band, poles);
+  for (const double omega : samples.omega) samples.s.push_back(detail::on_ray(scene, omega));
+  const std::vector<MatrixXcd> E = differences(finite, exact, samples);
+  detail::refuse_growing(exact, scene, band, samples);
   ErrorBound b;
-  b.peak = b.pairs = MatrixXd::Zero(H.front().rows(), H.front().cols());
-  for (const MatrixXcd& h : H) b.peak = b.peak.cwiseMax(h.cwiseAbs());
-  b.peak = with_floor(b.peak);
+  b.peak = detail::with_floor(samples.peak, detail::kNearlyZero);
+  b.pairs = MatrixXd::Zero(b.peak.rows(), b.peak.cols());
   for (std::size_t k = 0; k < E.size(); ++k) {
     const MatrixXd e = E[k].cwiseAbs().cwiseQuotient(b.peak);
-    if (e.maxCoeff() > b.pairs.maxCoeff()) b.hertz = omega[k] / (2 * std::numbers::pi);
+    if (e.maxCoeff() > b.pairs.maxCoeff()) b.hertz = samples.omega[k] / (2 * std::numbers::pi);
     b.pairs = b.pairs.cwiseMax(e);
   }
   b.pairs = b.pairs.array() / std::cos(detail::kPhase / 2) + detail::kOfTransfer;
@@ -79,7 +97,7 @@ ErrorBound difference(const TransferAt& finite, const System& exact, const Scene
   b.worst = b.pairs.maxCoeff(&i, &j);
   b.output = exact.outputs()[static_cast<std::size_t>(i)];
   b.input = exact.inputs()[static_cast<std::size_t>(j)];
-  b.samples = static_cast<int>(omega.size());
+  b.samples = static_cast<int>(samples.omega.size());
   return b;
 }
 

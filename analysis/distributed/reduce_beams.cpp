@@ -18,26 +18,44 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kShare = 0.5;  ///< of the accuracy: error of the finite beams
-constexpr double kFiner = 1.5;  ///< more elements and modes, if it is larger
+constexpr double kShare = 0.25;  ///< of the accuracy: error of the finite beams
+constexpr double kFiner = 1.5;   ///< more elements and modes, if it is larger
 constexpr int kMostElements = 200;
-constexpr int kTries = 4;  ///< reductions, each of half the accuracy of the one before
+constexpr int kTries = 5;  ///< reductions
 
 const ExactBeam* exact_beam(const Block& block) {
   const auto* spec = dynamic_cast<const Specified<ExactBeam>*>(&block);
   return spec ? &spec->spec() : nullptr;
 }
 
-/// Number of elements with which a bending wave of the softer plane at omega has this relative
-/// error of omega^2, (k h)^4 / 720.
-double elements_for(const ExactBeam& b, double omega, double error) {
-  const double I = std::min(b.section.I_y, b.section.I_z);
-  const double wave =
-      std::pow(b.material.rho * b.section.area * omega * omega / (b.material.E * I), 0.25);
-  return wave * b.length / std::pow(720 * error, 0.25);
+/// k L of a bending wave at omega.
+double bending_wave(const ExactBeam& b, double I, double omega) {
+  return std::pow(b.material.rho * b.section.area * omega * omega / (b.material.E * I), 0.25) *
+         b.length;
 }
 
-/// The scene's graph with finite beams, `finer` times finer than the first mesh.
+/// Elements of the softer plane for a bending wave at omega: (k h)^4 / 720 is the error of its
+/// omega^2.
+double elements_for(const ExactBeam& b, double omega, double error) {
+  return bending_wave(b, std::min(b.section.I_y, b.section.I_z), omega) /
+         std::pow(720 * error, 0.25);
+}
+
+/// Modes of the beam clamped at P up to omega: in bending, as a rod and as a shaft the k-th is near
+/// k L = (k - 1 / 2) pi.
+int modes_up_to(const ExactBeam& b, double omega) {
+  const Material& m = b.material;
+  const Section& s = b.section;
+  const double G = m.G ? *m.G : m.E / (2 * (1 + *m.nu)), polar = s.I_x ? *s.I_x : s.I_y + s.I_z,
+               rod = omega * b.length * std::sqrt(m.rho / m.E),
+               shaft = omega * b.length * std::sqrt(m.rho * polar / (G * s.J));
+  int count = 0;
+  for (const double x : {bending_wave(b, s.I_y, omega), bending_wave(b, s.I_z, omega), rod, shaft})
+    count += static_cast<int>(std::min(x / pi + 0.5, 6.0 * kMostElements));
+  return count;
+}
+
+/// The scene's graph with finite beams, so many times finer than the first guess.
 class FiniteScene {
  public:
   FiniteScene(const Graph& exact, const Scene& scene) : exact_(exact), scene_(scene) {}
@@ -64,19 +82,16 @@ class FiniteScene {
     const double omega = 2 * pi * scene_.band_hz[1];
     FiniteBeam beam;
     const double wanted = finer * elements_for(spec, omega, kShare * scene_.accuracy);
-    beam.elements = std::clamp(static_cast<int>(std::ceil(wanted)), 2, kMostElements);
-    const ModalData all = modal_data(with_elements(spec, beam.elements));
-    const auto total = static_cast<int>(all.omega.size());
-    const double limit = 2 * finer * omega;
-    beam.modes =
-        static_cast<int>(std::ranges::count_if(all.omega, [&](double w) { return w <= limit; }));
-    beam.residuals = 12;
-    if (beam.modes + beam.residuals >= total) {
-      beam.modes = total, beam.residuals = 0;
-      return {as_block(FlexibleBody(all)), beam};
-    }
-    const fe::ModeOptions modes{.kept = beam.modes, .residual = {"C", "P"}};
-    return {as_block(FlexibleBody(with_elements(spec, beam.elements, modes))), beam};
+    beam.elements = static_cast<int>(std::ceil(std::clamp<double>(wanted, 2, kMostElements)));
+    const int total = 6 * beam.elements;
+    fe::ModeOptions modes;
+    beam.modes = std::min(total, modes_up_to(spec, 2 * finer * omega));
+    if (beam.modes + 12 < total) modes = {.kept = beam.modes, .residual = {"C", "P"}};
+    const ModalData data = modal_data(with_elements(spec, beam.elements, modes));
+    const auto count = static_cast<int>(data.omega.size());
+    if (!modes.kept) beam.modes = count;
+    beam.residuals = count - beam.modes;
+    return {as_block(FlexibleBody(data)), beam};
   }
 
   const Graph& exact_;
@@ -103,7 +118,7 @@ ReducedBeams reduce_beams(const Diagram& diagram, const Scene& scene, const Opti
   const System exact(detail::compile_graph(graph, options));
   const FiniteScene finite(graph, scene);
   std::vector<FiniteBeam> beams;
-  Graph with_beams = finite.graph(1, beams);
+  Graph with_beams;
   ErrorBound of_beams;
   for (double finer = 1;; finer *= kFiner) {
     with_beams = finite.graph(finer, beams);
@@ -111,16 +126,20 @@ ReducedBeams reduce_beams(const Diagram& diagram, const Scene& scene, const Opti
     all.minimize_up_to = 0;
     of_beams = compare(System(detail::compile_graph(with_beams, all)), exact, scene);
     if (of_beams.worst <= kShare * scene.accuracy) break;
-    if (at_limit(beams)) refuse(of_beams, "beams of 200 elements");
+    if (!at_limit(beams)) continue;
+    if (of_beams.worst < scene.accuracy) break;
+    refuse(of_beams, "beams of 200 elements");
   }
   Scene rest = scene;
   rest.inputs.clear(), rest.outputs.clear();  // the graph has them already
-  rest.accuracy = scene.accuracy - of_beams.worst;
-  for (int k = 1;; ++k, rest.accuracy /= 2) {
+  // The errors of beams and reduction seldom add: the whole accuracy first, then what is left of
+  // it, then halves.
+  for (int k = 0;; ++k) {
+    if (k > 0) rest.accuracy = (scene.accuracy - of_beams.worst) * std::pow(0.5, k - 1);
     const ReducedSystem system = detail::compile_scene(with_beams, rest, options);
     const ErrorBound error = compare(system, exact);
     if (error.worst <= scene.accuracy) return {system, beams, error, of_beams};
-    if (k == kTries) refuse(error, "the reduced beams");
+    if (k + 1 == kTries) refuse(error, "the reduced beams");
   }
 }
 

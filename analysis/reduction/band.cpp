@@ -40,13 +40,6 @@ void refuse_integrals(const System& system, const Whole& w) {
   }
 }
 
-double lowest(const std::vector<Complex>& poles, double high) {
-  double first = high > 0 ? high : 1;
-  for (const Complex& p : poles)
-    if (p != 0.0 && std::abs(p) < first) first = std::abs(p);
-  return first;
-}
-
 /// False if a pole at 0, though without effect, hides the gain of a system that is too large to be
 /// minimized.
 bool has_gain(const System& system) try {
@@ -59,11 +52,18 @@ bool has_gain(const System& system) try {
 
 }  // namespace
 
+double start_of(const std::vector<Complex>& poles, double high) {
+  double lowest = high > 0 ? high : 1;
+  for (const Complex& p : poles)
+    if (p != 0.0 && std::abs(p) < lowest) lowest = std::abs(p);
+  return 1e-6 * lowest;
+}
+
 Band band_of(const System& system, const Scene& scene, const Whole& w) {
   Band band{2 * std::numbers::pi * scene.band_hz[0], 2 * std::numbers::pi * scene.band_hz[1], 0};
   if (band.low > 0 || w.loose == 0) return band;
   refuse_integrals(system, w);
-  band.start = 1e-6 * lowest(SampledSpectrum(w).poles, band.high);
+  band.start = start_of(SampledSpectrum(w).poles, band.high);
   return band;
 }
 
@@ -79,7 +79,7 @@ Band band_of(const System& system, const Scene& scene, const std::vector<Complex
     for (Index m = 0; m < one.cols(); ++m)
       if (std::abs(one(i, m)) > 1e-12 * size(i, m) || two(i, m) != 0)
         refuse_integral(system, "an integral", i, m);
-  band.start = 1e-6 * lowest(poles, band.high);
+  band.start = start_of(poles, band.high);
   return band;
 }
 

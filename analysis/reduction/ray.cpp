@@ -170,19 +170,13 @@ std::pair<Eigen::VectorXd, Eigen::RowVectorXd> port_sizes(const MatrixXd& peak) 
   return {out, in};
 }
 
-namespace {
-
-/// Without modes to estimate a pair's size (rigid bodies only): from its row and column. Rows and
-/// columns of 0 count as 1.
-MatrixXd with_floor(MatrixXd peak) {
+MatrixXd with_floor(MatrixXd peak, double share) {
   const auto [out, in] = port_sizes(peak);
   const Eigen::VectorXd row = (peak.rowwise().maxCoeff().array() > 0).cast<double>();
   const Eigen::RowVectorXd column = (peak.colwise().maxCoeff().array() > 0).cast<double>();
-  peak = peak.cwiseMax(kNoPair * out.cwiseProduct(row) * in.cwiseProduct(column));
+  peak = peak.cwiseMax(share * out.cwiseProduct(row) * in.cwiseProduct(column));
   return (peak.array() > 0).select(peak, 1);
 }
-
-}  // namespace
 
 Samples sample(const System& system, const Scene& scene, const SampledSpectrum& w,
                std::vector<double> omega) {
@@ -209,7 +203,8 @@ Samples sample(const System& system, const Scene& scene, const SampledSpectrum& 
     meant = meant.cwiseMax(out * in);
   }
   result.alike = result.alike.cwiseMax(meant);
-  result.peak = with_floor(result.peak.cwiseMax(kNearlyZero * meant));
+  // Without modes to estimate a pair's size (rigid bodies only): from its row and column.
+  result.peak = with_floor(result.peak.cwiseMax(kNearlyZero * meant), kNoPair);
   return result;
 }
 

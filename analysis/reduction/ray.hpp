@@ -20,6 +20,9 @@ inline constexpr double kOfTransfer = 1e-12;
 struct Band {
   double low = 0, high = 0, start = 0;
 };
+/// Band::start of a model with these poles: 1e-6 of the slowest that is not 0, or of the band's end
+/// if that is lower [rad/s].
+double start_of(const std::vector<std::complex<double>>& poles, double high);
 /// Throws bad_value for a band from 0 if an output reads the position or the rate of a motion
 /// without stiffness that an input drives: there is no gain at 0.
 Band band_of(const System& system, const Scene& scene, const Whole& whole);
@@ -71,6 +74,10 @@ Eigen::MatrixXd rounding(const Samples& samples, double nearest);
 /// every row and every column: found by scaling rows and columns by the roots of their largest
 /// entries in turn, so that units cancel. Rows and columns of 0 have size 1.
 std::pair<Eigen::VectorXd, Eigen::RowVectorXd> port_sizes(const Eigen::MatrixXd& peak);
+
+/// The peaks, those of pairs that are nearly 0 raised to this share of their output's size times
+/// their input's (port_sizes). Pairs of an output or an input without any peak have 1.
+Eigen::MatrixXd with_floor(Eigen::MatrixXd peak, double share);
 
 /// Throws bad_value for a band from 0 if a pair's peak is its first sample and grows towards 0 like
 /// a pole there: an integral that rounding or a law spreads over several states. One transfer.

@@ -2,6 +2,7 @@
 
 #include <titop/compiler/definition/exact/equations.hpp>
 #include <titop/compiler/definition/exact_order.hpp>
+#include <titop/graph/closed_form.hpp>
 
 namespace titop {
 namespace {
@@ -22,6 +23,7 @@ ExactOrder order_of(const exact::Model& m) {
 
 ExactOrder exact_order(const Graph& graph, const ExactOptions& options, ParameterValues values) {
   if (!graph.mistakes.empty()) throw Error(graph.mistakes);
+  require_state_space(graph);
   const std::vector<double> nominal = nominal_values(graph);
   try {
     if (graph.inputs.empty() || graph.outputs.empty())

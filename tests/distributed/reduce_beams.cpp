@@ -7,8 +7,8 @@
 #include <titop/blocks/exact_beam.hpp>
 #include <titop/titop.hpp>
 
+#include "random_beams.hpp"
 #include "support/mistakes.hpp"
-#include "support/rng.hpp"
 
 using namespace titop;
 using Eigen::MatrixXcd;
@@ -60,17 +60,9 @@ Diagram arm_of(int elements) {
 const Scene kScene{.band_hz = {0, 40}, .accuracy = 1e-3};
 
 /// Largest error of a pair over this peak on the ray, on a fine grid of its own.
-double error_on_grid(const std::function<MatrixXcd(Complex)>& model, const System& exact,
-                     const Scene& scene, const MatrixXd& peak) {
-  constexpr int kPoints = 200;
-  const double zeta = scene.damping_floor, high = 2 * std::numbers::pi * scene.band_hz[1];
-  double worst = 0;
-  for (int k = 1; k <= kPoints; ++k) {
-    const Complex s = high * k / kPoints * Complex(zeta, std::sqrt(1 - zeta * zeta));
-    const MatrixXd off = (model(s) - exact.transfer(s)).cwiseAbs();
-    worst = std::max(worst, off.cwiseQuotient(peak).maxCoeff());
-  }
-  return worst;
+template <class Model>
+double error_on_grid(const Model& model, const System& exact, const ErrorBound& e) {
+  return titop_test::error_at(model, exact, titop_test::steps_of(kScene, 200), e.peak);
 }
 
 }  // namespace
@@ -85,8 +77,7 @@ TEST_CASE("compare: the error of a mesh falls with h^4, and bounds that of a fin
     CHECK(e.kind == BoundKind::estimate);
     CHECK(e.pairs.rows() == 12);
     CHECK(e.pairs.maxCoeff() == e.worst);
-    CHECK(error_on_grid([&](Complex s) { return finite.transfer(s); }, exact, kScene, e.peak) <=
-          e.worst);
+    CHECK(error_on_grid(finite, exact, e) <= e.worst);
   }
   CHECK(worst[0] / worst[1] >= 8);
   CHECK(worst[1] / worst[2] >= 8);
@@ -116,8 +107,7 @@ TEST_CASE("reduce_beams: elements and modes for an accuracy against the distribu
     INFO(to_string(r));
     CHECK(r.error.worst <= accuracy);
     CHECK(r.of_beams.worst <= accuracy / 2);
-    CHECK(error_on_grid([&](Complex s) { return r.system.transfer(s); }, exact, scene,
-                        r.error.peak) <= accuracy);
+    CHECK(error_on_grid(r.system, exact, r.error) <= accuracy);
     REQUIRE(r.beams.size() == 2);
     CHECK(r.beams[0].name == "upper");
     CHECK(r.beams[0].elements > r.beams[1].elements);
@@ -126,30 +116,39 @@ TEST_CASE("reduce_beams: elements and modes for an accuracy against the distribu
   }
 }
 
-TEST_CASE("random arms of distributed beams: the error is below the accuracy") {
-  titop_test::Rng rng(52);
-  for (int links = 1; links <= 3; ++links) {
-    Diagram d{"random arm"};
-    auto hub = d.add("hub", RigidBody{.mass = rng.between(5, 200),
-                                      .inertia = rng.between(1, 20) * Matrix3d::Identity(),
-                                      .children = {{"a", {rng.between(0, 1), 0, 0.1}}}});
-    hub.parent.force = -d.input("F", 6);
-    std::vector<DualPort<6>> sites = {hub.child("a")};
-    for (int i = 0; i < links; ++i) {
-      const double length = rng.between(0.5, 4), diameter = rng.between(0.02, 0.1);
-      auto b = d.add("b" + std::to_string(i + 1), link(length, diameter));
-      mount(b, sites.back(), Rotation::about(kZ, rng.between(-2, 2)));
-      sites.push_back(b.child("C"));
-    }
-    auto tip = d.add(
-        "tip", RigidBody{.mass = rng.between(0.1, 20), .inertia = 0.05 * Matrix3d::Identity()});
-    mount(tip, sites.back());
-    d.output("hub", 6) = hub.parent.accel;
-    const Scene scene{.band_hz = {0, rng.between(2, 20)}, .accuracy = 1e-3};
-    const ReducedBeams r = reduce_beams(d, scene);
-    INFO(links << '\n' << to_string(r));
-    CHECK(r.error.worst <= scene.accuracy);
-    CHECK(error_on_grid([&](Complex s) { return r.system.transfer(s); }, compile(d), scene,
-                        r.error.peak) <= scene.accuracy);
+TEST_CASE("compare refuses what has no gain at 0, and models without inputs or outputs") {
+  const auto free_beam = [](bool position, auto spec) {
+    Diagram d{"free beam"};
+    auto b = d.add("b", spec);
+    b.parent.force = -d.input("F", 6);
+    d.output("y", 6) = position ? b.parent.position : b.parent.rate;
+    return d;
+  };
+  const FlexibleBody finite{with_elements(link(1, 0.05), 4)};
+  for (const bool position : {true, false}) {
+    const System a = compile(free_beam(position, finite)),
+                 b = compile(free_beam(position, link(1, 0.05)));
+    const auto at = [&](double low) { return compare(a, b, {.band_hz = {low, 50}}); };
+    CHECK(says(error_of([&] { at(0); }), Code::bad_value, {"y(", "F(", "0 Hz", "band_hz"}));
+    CHECK(at(1).worst < 1);
   }
+  Diagram none{"none"};
+  none.add("b", link(1, 0.05)).parent.accel = 0;
+  CHECK(says(error_of([&] { compare(compile(none), compile(none), kScene); }), Code::not_rational,
+             {"b"}));
+}
+
+TEST_CASE("what needs a state space refuses distributed beams, and names them") {
+  const Diagram d = exact_arm();
+  const System system = compile(d);
+  const auto refused = [](auto f) { return says(error_of(f), Code::not_rational, {"upper"}); };
+  CHECK(refused([&] { exact_order(d.graph()); }));
+  CHECK(refused([&] { derivatives(system, {}); }));
+  CHECK(refused([&] { report_html(system, {.diagrams = false}); }));
+  CHECK(refused([&] { generate_cpp(system); }));
+  CHECK(refused([&] { mode_shapes(system, std::vector<int>{0}); }));
+  CHECK(refused([&] { interface_bracket([](Lumping) { return exact_arm(); }); }));
+  Diagram part{"part"};
+  part.add("upper", link(3, 0.08));
+  CHECK(refused([&] { damping_of_assembly(part, "upper.parent", {{"C", "upper.C"}}, 0.003); }));
 }

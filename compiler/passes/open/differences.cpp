@@ -4,6 +4,7 @@
 #include <cmath>
 #include <titop/compiler/passes/moves_points.hpp>
 #include <titop/compiler/passes/open/differences.hpp>
+#include <titop/graph/closed_form.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/opened.hpp>
@@ -54,6 +55,8 @@ bool is_small(const MatrixXd& error, const MatrixXd& derivative, const MatrixXd&
 /// Derivative of [A, B; C, D] by the parameter; unknown if it moves points, if values near it are
 /// refused, or if the extrapolation does not converge.
 BlockDerivative by_differences(const Block& block, ParameterValues given, int parameter) {
+  if (closed_form_of(block))
+    return unknown("its transfer is a closed form, and it has no matrices", "use sweep");
   std::vector<double> values(given.begin(), given.end());
   double& p = values[at(parameter)];
   const double here = p, step = step_of(here);
