@@ -11,16 +11,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// J = [[0, I], [-I, 0]] and R = diag(0, damping).
-void set_structure(PortHamiltonian& s, const MatrixXd& damping) {
-  const auto n = damping.rows();
-  s.J = MatrixXd::Zero(2 * n, 2 * n);
-  s.J.topRightCorner(n, n).setIdentity();
-  s.J.bottomLeftCorner(n, n) = -MatrixXd::Identity(n, n);
-  s.R = MatrixXd::Zero(2 * n, 2 * n);
-  s.R.bottomRightCorner(n, n) = damping;
-}
-
 void require_size(const char* name, const VectorXd& v, Eigen::Index size) {
   if (v.size() == size) return;
   throw Error(Code::size, fmt::format("PortHamiltonian: {} has {} entries", name, v.size()),
@@ -28,6 +18,17 @@ void require_size(const char* name, const VectorXd& v, Eigen::Index size) {
 }
 
 }  // namespace
+
+PortHamiltonian detail::canonical(const MatrixXd& damping) {
+  const auto n = damping.rows();
+  PortHamiltonian s;
+  s.J = MatrixXd::Zero(2 * n, 2 * n);
+  s.J.topRightCorner(n, n).setIdentity();
+  s.J.bottomLeftCorner(n, n) = -MatrixXd::Identity(n, n);
+  s.R = MatrixXd::Zero(2 * n, 2 * n);
+  s.R.bottomRightCorner(n, n) = damping;
+  return s;
+}
 
 double PortHamiltonian::energy(const VectorXd& x) const {
   require_size("x", x, Q.rows());
@@ -58,9 +59,8 @@ StateSpace PortHamiltonian::state_space() const {
 PortHamiltonian port_hamiltonian(const SpringMass& spec) {
   const double m = spec.mass.nominal(), k = spec.stiffness.nominal();
   const double c = spec.damping.nominal(), m0 = spec.parent_mass.nominal();
-  PortHamiltonian s;
+  PortHamiltonian s = detail::canonical(MatrixXd::Constant(1, 1, c));
   s.Q = Eigen::Vector2d(k, 1 / m).asDiagonal();
-  set_structure(s, MatrixXd::Constant(1, 1, c));
   s.G = (MatrixXd(2, 2) << 0, 0, 1, -m).finished();
   s.N = (MatrixXd(2, 1) << 1 / m, -1).finished();
   s.P = (MatrixXd(2, 2) << 0, 1, 1, -(m0 + m)).finished();
@@ -71,11 +71,10 @@ PortHamiltonian port_hamiltonian(const FlexibleBody& body) {
   const ModalData d = body.nominal();
   const auto n = d.omega.size();
   const MatrixXd W = modal_input(d);
-  PortHamiltonian s;
+  PortHamiltonian s = detail::canonical(body.damping());
   VectorXd stiffness = VectorXd::Ones(2 * n);
   stiffness.head(n) = d.omega.cwiseAbs2();
   s.Q = stiffness.asDiagonal();
-  set_structure(s, body.damping());
   s.G = MatrixXd::Zero(2 * n, W.cols());
   s.G.bottomRows(n) = W;
   s.N = W.transpose();

@@ -38,4 +38,9 @@ PortHamiltonian port_hamiltonian(const SpringMass& spec);
 /// body with a loss factor.
 PortHamiltonian port_hamiltonian(const FlexibleBody& body);
 
+namespace detail {
+/// J = [0, I; -I, 0] and R = diag(0, damping), n x n; nothing else.
+PortHamiltonian canonical(const Eigen::MatrixXd& damping);
+}  // namespace detail
+
 }  // namespace titop

@@ -67,6 +67,9 @@ void bind_results(py::module_& m) {
       .def_readonly("C_accel", &SecondOrderModel::C_accel)
       .def_readonly("direct", &SecondOrderModel::direct)
       .def("transfer", &SecondOrderModel::transfer, "s"_a);
+  m.def(
+      "port_hamiltonian", [](const SecondOrderModel& model) { return port_hamiltonian(model); },
+      "model"_a, "A reduced structure as a port-Hamiltonian system.");
   py::class_<ModalModel>(m, "ModalModel", "A of 2 x 2 blocks, one per mode; B, C, D.")
       .def_readonly("A", &ModalModel::A)
       .def_readonly("B", &ModalModel::B)
