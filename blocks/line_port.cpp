@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <titop/blocks/fe/modal_checks.hpp>
 #include <titop/blocks/flexible_body.hpp>
 #include <titop/blocks/line_port.hpp>
@@ -51,22 +52,46 @@ std::pair<LineShape, double> shape_in(const LinePort& a, const LinePort& b, cons
   return {{of.axis + (is_rotation(shape) ? 3 : 0), shape.degree}, flip * of.sign};
 }
 
-/// Refuses a shape of a that has a direction in which the nodes of b have no shapes at all.
-void require_one_plane(const LinePort& a, const LinePort& b, const Matrix3d& T) {
-  for (const LineShape& s : a.line.shapes) {
-    const LineShape wanted = shape_in(a, b, T, s).first;
-    if (std::ranges::find(b.line.shapes, wanted.component, &LineShape::component) !=
-        b.line.shapes.end())
-      continue;
-    throw Error(
-        Code::bad_value,
-        fmt::format("lines {} and {} do not meet in one plane: {} of {} is {} of {}, in which {} "
-                    "is rigid",
-                    a.name, b.name, component_name(s.component), a.name,
-                    component_name(wanted.component), b.name, b.name),
-        "T_ba turns panels into each other by half turns, or by quarter turns about their normal; "
-        "at another angle join points of rigid or average interfaces");
+bool has_component(const ModalLine& line, int component) {
+  return std::ranges::find(line.shapes, component, &LineShape::component) != line.shapes.end();
+}
+
+/// The only direction in which the line's nodes are displaced; none: there are several, or none.
+std::optional<int> deflection(const ModalLine& line) {
+  std::optional<int> only;
+  for (int c = 0; c < 3; ++c) {
+    if (!has_component(line, c)) continue;
+    if (only) return std::nullopt;
+    only = c;
   }
+  return only;
+}
+
+/// True if line b cannot follow this displacement of a, since its body is rigid in that direction:
+/// both are then held straight. At any angle between panels that deflect along their normal alone.
+bool is_held(const LinePort& a, const LinePort& b, const Matrix3d& T, const LineShape& shape) {
+  if (is_rotation(shape)) return false;
+  const std::optional<int> mine = deflection(a.line), other = deflection(b.line);
+  if (mine && other) return std::abs(T(*other, *mine)) < 1 - kSameAxis;
+  return !has_component(b.line, turned(a, b, T, shape.component).axis);
+}
+
+/// Shapes of a that are not held.
+std::vector<LineShape> tied(const LinePort& a, const LinePort& b, const Matrix3d& T) {
+  std::vector<LineShape> result = a.line.shapes;
+  std::erase_if(result, [&](const LineShape& s) { return is_held(a, b, T, s); });
+  return result;
+}
+
+/// True if the tied shapes of both lines are the same.
+bool same_shapes(const LinePort& a, const LinePort& b, const Matrix3d& T) {
+  const std::vector<LineShape> mine = tied(a, b, T), others = tied(b, a, T.transpose());
+  return mine.size() == others.size() && std::ranges::all_of(mine, [&](const LineShape& s) {
+           const LineShape wanted = shape_in(a, b, T, s).first;
+           return std::ranges::any_of(others, [&](const LineShape& t) {
+             return t.component == wanted.component && t.degree == wanted.degree;
+           });
+         });
 }
 
 void require_same(const LinePort& a, const LinePort& b, const Rotation& T_ba) {
@@ -87,14 +112,7 @@ void require_same(const LinePort& a, const LinePort& b, const Rotation& T_ba) {
                 "to)");
   const Matrix3d T = T_ba.nominal();
   const bool same_axis = turned(a, b, T, a.line.axis).axis == b.line.axis;
-  if (same_axis) require_one_plane(a, b, T), require_one_plane(b, a, T.transpose());
-  const bool fits = same_axis && a.line.shapes.size() == b.line.shapes.size() &&
-                    std::ranges::all_of(a.line.shapes, [&](const LineShape& s) {
-                      const LineShape wanted = shape_in(a, b, T, s).first;
-                      return std::ranges::any_of(b.line.shapes, [&](const LineShape& t) {
-                        return t.component == wanted.component && t.degree == wanted.degree;
-                      });
-                    });
+  const bool fits = same_axis && same_shapes(a, b, T);
   if (!fits)
     throw Error(Code::size,
                 fmt::format("line {} along {} has the shapes {}, line {} along {} has {}", a.name,
@@ -104,11 +122,24 @@ void require_same(const LinePort& a, const LinePort& b, const Rotation& T_ba) {
                 "their frames");
 }
 
-/// Equal motion and opposite forces of the shapes of both lines.
+void hold_shapes(const LinePort& line, const SourceLine& at) {
+  for (const DualPort<1>& shape : line.shape_ports) ground(shape, at);
+}
+
+/// Holds the shapes of a that b cannot follow.
+void hold_straight(const LinePort& a, const LinePort& b, const Matrix3d& T, const SourceLine& at) {
+  for (std::size_t i = 0; i < a.line.shapes.size(); ++i)
+    if (is_held(a, b, T, a.line.shapes[i])) ground(a.shape_ports[i], at);
+}
+
+/// Equal motion and opposite forces of the shapes of both lines; those that the other line cannot
+/// follow are held.
 void tie_shapes(const LinePort& a, const LinePort& b, const Matrix3d& T, bool rotations,
                 const SourceLine& at) {
+  hold_straight(a, b, T, at), hold_straight(b, a, T.transpose(), at);
   for (std::size_t i = 0; i < a.line.shapes.size(); ++i) {
     if (!rotations && is_rotation(a.line.shapes[i])) continue;
+    if (is_held(a, b, T, a.line.shapes[i])) continue;
     const auto [shape, sign] = shape_in(a, b, T, a.line.shapes[i]);
     const DualPort<1>& mine = a.shape_ports[i];
     const DualPort<1> other = b.shape(shape);
@@ -116,10 +147,6 @@ void tie_shapes(const LinePort& a, const LinePort& b, const Matrix3d& T, bool ro
     mine.accel = Rhs(signed_by(other.accel.expr()), at);
     other.force += Rhs(signed_by(mine.reaction.expr()).negated(), at);
   }
-}
-
-void hold_shapes(const LinePort& line, const SourceLine& at) {
-  for (const DualPort<1>& shape : line.shape_ports) ground(shape, at);
 }
 
 /// States that the rotation's shapes are free, which is meant here.

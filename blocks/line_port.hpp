@@ -53,9 +53,10 @@ void weld(const LinePort& line, const DualPort<6>& site, const Rotation& T_ba = 
 
 /// Fixes line `a` to line `b` along their whole length: `mount` of the bodies at their middles if a
 /// is its body's parent (or b is), else `weld`, and equal motion and opposite forces of every
-/// shape. T_ba: components in frame a to those in frame b; numbers, no parameter. The panels are in
-/// one plane: it turns them by half turns, or by quarter turns about their normal. At a right angle
-/// the deflection of one is a motion of the other in its plane, in which a plate is rigid.
+/// shape. T_ba: components in frame a to those in frame b; numbers, no parameter. Panels in one
+/// plane share deflection and slope of the edge. Panels at an angle along it, as of a box, share
+/// its slope, and both hold it straight: the deflection of one is a motion of the other in its
+/// plane, in which a plate is rigid.
 ///
 /// The meshes of the edges need not match if m is at most 4: the nodes' cubic functions then
 /// contain the polynomials, both edges move, or are measured, by the same ones, and the scene is
@@ -65,8 +66,8 @@ void weld(const LinePort& line, const DualPort<6>& site, const Rotation& T_ba = 
 /// those of degree 4 differ by 0.017, between 6 and 16 those of degree 6 by 0.10.
 ///
 /// Throws size for lines with other shapes, bad_value for lengths that differ by more than 1e-6,
-/// two parents, axes that T_ba does not turn into each other, panels that are not in one plane, and
-/// a T_ba with parameters; `compile` reports the errors of mount and weld.
+/// two parents, axes that T_ba does not turn into each other, and a T_ba with parameters; `compile`
+/// reports the errors of mount and weld.
 void weld(const LinePort& a, const LinePort& b, const Rotation& T_ba = {},
           SourceLine at = std::source_location::current());
 

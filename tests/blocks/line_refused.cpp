@@ -17,8 +17,6 @@ using titop_test::says;
 
 namespace {
 
-constexpr double half_pi = 1.5707963267948966;
-
 FlexibleBody body(const fe::Mesh& mesh, const std::string& parent, const std::string& child) {
   return fe::modal_data(mesh, parent, {child});
 }
@@ -60,11 +58,6 @@ TEST_CASE("lines that do not fit are refused, with both") {
                a.line("next").shape({9, 1});
              }),
              Code::unknown_name, {"a.next", "component 9", "z2"}));
-  // At a right angle about the common edge, along y, z of the one is x of the other.
-  auto f = d.add("f", body(other, "part", "few"));
-  for (const double angle : {1.0, -1.0})
-    CHECK(says(refused(b.line("few"), f.line("few"), Rotation::about({0, 1, 0}, angle * half_pi)),
-               Code::bad_value, {"b.few", "f.few", "one plane", "z of b.few is x of f.few"}));
   ModalData wrong = fe::modal_data(along, "prev", {});
   wrong.lines[0].Phi.conservativeResize(4, Eigen::NoChange);
   CHECK(says(error_of([&] { FlexibleBody{wrong}; }), Code::bad_modes, {"prev", "4", "5"}));
