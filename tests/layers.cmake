@@ -64,7 +64,7 @@ room(emit/cpp                  compiler/realization compiler/system analysis/sim
 # Deeper than System: it draws System::stage(), a type of compiler/passes.
 room(emit/report               compiler/passes compiler/diagram compiler/system analysis/simulation
                                analysis/certify analysis/reduction analysis/control analysis/shapes
-                               emit/text)
+                               analysis/bracket emit/text)
 # Exact scenes have answers that the library has no part in.
 room(app/generate              emit/text)
 room(app/generate/diagrams     blocks/fe blocks app/generate)

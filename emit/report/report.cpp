@@ -41,6 +41,7 @@ std::string report_html(const System& system, const ReportOptions& options) {
       {"scene", "The scene", report::scene_section(s)},
       {"poles", "Poles", report::poles_section(s)},
       {"modes", "Mode shapes", report::modes_section(s)},
+      {"interfaces", "Interfaces of many nodes", report::bracket_section(s)},
       {"frequency", "Frequency responses", std::move(responses.frequency)},
       {"time", "Step responses", std::move(responses.time)},
       {"margins", "Stability margins", report::margins_section(s)},

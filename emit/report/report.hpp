@@ -2,7 +2,9 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <titop/analysis/bracket/interface_bracket.hpp>
 #include <titop/compiler/system/system.hpp>
 #include <utility>
 #include <vector>
@@ -28,6 +30,9 @@ struct ReportOptions {
   /// Up to this many states (System::order()) the full certificate, mode shapes and the margins of
   /// loop points are made, too: O(n^3).
   int full_up_to = 100;
+  /// interface_bracket of the same scene: a section shows how much the lumping of its interfaces of
+  /// many nodes costs, mode by mode.
+  std::optional<InterfaceBracket> bracket = {};
 };
 
 /// A report as one self-contained HTML text: no script, no network. It contains the scene before

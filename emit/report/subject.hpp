@@ -48,6 +48,8 @@ std::string scene_section(const Subject& subject);
 std::string poles_section(const Subject& subject);
 /// The first modes; empty for a diagram without points in space.
 std::string modes_section(const Subject& subject);
+/// The bracket of ReportOptions; empty without one.
+std::string bracket_section(const Subject& subject);
 /// Margins of every loop point; empty without any, or beyond ReportOptions::full_up_to.
 std::string margins_section(const Subject& subject);
 std::string certificate_section(const Subject& subject, const FullCertificate* full);
