@@ -80,7 +80,7 @@ Graph without_equations(const Graph& g) {
 }  // namespace
 
 Stage lower(Stage stage) {
-  Graph source = by_name(stage.written());
+  Graph source = by_name(stage.written(), stage);
   open_motions(stage, source);
   add_rigid_motions(stage, source);
   stage.source = std::make_shared<const Graph>(std::move(source));

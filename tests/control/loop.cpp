@@ -67,6 +67,33 @@ TEST_CASE("L, S and T of an inertia with a PD law, closed by 1 + L") {
   CHECK(l.S.state_space().order() == 2);
 }
 
+TEST_CASE("a law with states on a free hub's attitude, whatever the names") {
+  // The cut parts the law from the hub: the nodes, and the integrators of the attitude among them,
+  // come in another order. L = 5 (kd s + kp) / ((s + 5) J s^2).
+  for (const auto& [hub_name, law_name] : {std::pair{"hub", "law"}, {"z", "a"}, {"a", "z"}}) {
+    Diagram d{"attitude"};
+    auto w = d.input("w");
+    auto hub = d.add(hub_name, RigidBody{.mass = 1, .inertia = J * Matrix3d::Identity()});
+    auto law = d.add(law_name, Lti{.A = MatrixXd::Constant(1, 1, -5),
+                                   .B = MatrixXd::Constant(1, 1, 1),
+                                   .C = MatrixXd::Constant(1, 1, 5 * kp - 25 * kd),
+                                   .D = MatrixXd::Constant(1, 1, 5 * kd)});
+    const MatrixXd z = Eigen::Vector3d::UnitZ();
+    law.in = hub.parent.position.angular().along({0, 0, 1});
+    hub.parent.force.linear = 0;
+    hub.parent.force.angular = z * d.loop_point("torque", law.out) - z * w;
+    d.output("angle") = hub.parent.position.angular().along({0, 0, 1});
+    const ControlLoop l = loop(compile(d), "torque");
+    for (const Complex s : kPoints) {
+      const Complex L = 5.0 * (kd * s + kp) / ((s + 5.0) * J * s * s);
+      CHECK(std::abs(scalar(l.L, s) - L) <= 1e-13 * std::abs(L));
+      CHECK(std::abs(scalar(l.S, s) - 1.0 / (1.0 + L)) <= 1e-13 * std::abs(1.0 / (1.0 + L)));
+      CHECK(std::abs(scalar(l.T, s) - L / (1.0 + L)) <= 1e-13 * std::abs(L / (1.0 + L)));
+    }
+    CHECK(l.L.state_space().order() == 3);
+  }
+}
+
 TEST_CASE("parameters of the system, and of the loop itself") {
   const System system = compile(inertia(true)).update({{"kp", 7.0}});
   const ControlLoop l = loop(system, "torque");

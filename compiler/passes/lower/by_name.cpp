@@ -3,6 +3,7 @@
 #include <titop/compiler/passes/lower/along_trees.hpp>
 #include <titop/compiler/passes/lower/by_name.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <unordered_map>
 
 namespace titop::passes {
 namespace {
@@ -78,6 +79,26 @@ Graph by_name(const Graph& g) {
     rename(out.outputs.back().terms);
   }
   return out;
+}
+
+Graph by_name(const Graph& graph, Stage& stage) {
+  Graph sorted = by_name(graph);
+  if (stage.motions.empty() && stage.before.empty()) return sorted;
+  std::unordered_map<std::string_view, int> now;  // names of nodes are their own
+  for (int n = 0; n < static_cast<int>(sorted.nodes.size()); ++n) now[sorted.nodes[at(n)].name] = n;
+  const auto move = [&](int& node) { node = now.at(graph.nodes[at(node)].name); };
+  for (RigidMotion& m : stage.motions) {
+    move(m.node);
+    int owner = graph.signals[at(m.signal)].node;
+    const int offset = m.signal - graph.nodes[at(owner)].first_signal;
+    move(owner);
+    m.signal = sorted.nodes[at(owner)].first_signal + offset;
+  }
+  for (Dependent& d : stage.before) {
+    move(d.node);
+    for (Dependent::Share& s : d.of) move(s.node);
+  }
+  return sorted;
 }
 
 }  // namespace titop::passes

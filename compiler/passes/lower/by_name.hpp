@@ -1,5 +1,6 @@
 #pragma once
 
+#include <titop/compiler/passes/stage.hpp>
 #include <titop/graph/graph.hpp>
 
 namespace titop::passes {
@@ -9,5 +10,9 @@ namespace titop::passes {
 /// the trees that they form, equations in the order of their targets. The order in memory is the
 /// same, since all later passes traverse it in turn.
 Graph by_name(const Graph& graph);
+
+/// The same; what the stage has of the graph's nodes and signals, from a compiled system whose
+/// graph has been rewritten (Stage::motions, Stage::before), follows.
+Graph by_name(const Graph& graph, Stage& stage);
 
 }  // namespace titop::passes

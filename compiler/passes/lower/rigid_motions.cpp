@@ -5,9 +5,7 @@
 #include <titop/graph/drives.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/nodes/lti.hpp>
-#include <unordered_map>
 #include <unordered_set>
-#include <utility>
 
 namespace titop::passes {
 namespace {
@@ -72,25 +70,6 @@ void add_integrators(Graph& g, const std::set<RigidMotion>& missing,
     }
 }
 
-/// Sorts by name again; the stage's node numbers follow.
-void sort_by_name(Graph& g, Stage& stage) {
-  const Graph old = std::exchange(g, by_name(g));
-  std::unordered_map<std::string_view, int> now;  // names of nodes are their own
-  for (int n = 0; n < static_cast<int>(g.nodes.size()); ++n) now[g.nodes[at(n)].name] = n;
-  const auto move = [&](int& node) { node = now.at(old.nodes[at(node)].name); };
-  for (RigidMotion& m : stage.motions) {
-    move(m.node);
-    int owner = old.signals[at(m.signal)].node;
-    const int offset = m.signal - old.nodes[at(owner)].first_signal;
-    move(owner);
-    m.signal = g.nodes[at(owner)].first_signal + offset;
-  }
-  for (Dependent& d : stage.before) {
-    move(d.node);
-    for (Dependent::Share& s : d.of) move(s.node);
-  }
-}
-
 bool asks_for_motion(const std::vector<Term>& terms) {
   return std::any_of(terms.begin(), terms.end(), [](const Term& t) {
     return t.of == Term::Of::position || t.of == Term::Of::rate;
@@ -121,7 +100,7 @@ void add_rigid_motions(Stage& stage, Graph& g) {
   }
   if (missing.empty()) return;
   add_integrators(g, missing, stage.motions);
-  sort_by_name(g, stage);
+  g = by_name(g, stage);
   std::string list;
   for (const RigidMotion& m : stage.motions)
     list += (list.empty() ? "" : ", ") + g.nodes[at(m.node)].name;
