@@ -102,7 +102,6 @@ void bind_flexible_body(py::module_& m) {
           "The modal data as given (a copy).");
   py::implicitly_convertible<ModalData, FlexibleBody>();
   py::implicitly_convertible<Beam, FlexibleBody>();
-  add_to_diagram<FlexibleBody, BodyHandle>(m);
 }
 
 }  // namespace

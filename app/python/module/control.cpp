@@ -3,6 +3,17 @@
 namespace titop::python {
 namespace {
 
+/// The loop, with Python's warnings of the cut diagram.
+template <class F>
+ControlLoop warned_loop(const System& system, F make) {
+  ControlLoop loop = [&] {
+    const LockReleased unlocked;
+    return make();
+  }();
+  warn(loop.L.notes(), system.notes());
+  return loop;
+}
+
 void bind_loops(py::module_& m) {
   py::class_<ControlLoop>(
       m, "ControlLoop",
@@ -12,9 +23,18 @@ void bind_loops(py::module_& m) {
       .def_readonly("L", &ControlLoop::L, "Loop transfer.")
       .def_readonly("S", &ControlLoop::S, "Sensitivity.")
       .def_readonly("T", &ControlLoop::T, "Complementary sensitivity.");
-  m.def("loop", &loop, "system"_a, "name"_a, Unlocked(), "The loop at this loop point.");
-  m.def("mimo_loop", &mimo_loop, "system"_a, "names"_a, Unlocked(),
-        "The loop cut at several points at once.");
+  m.def(
+      "loop",
+      [](const System& s, const std::string& name) {
+        return warned_loop(s, [&] { return loop(s, name); });
+      },
+      "system"_a, "name"_a, "The loop at this loop point.");
+  m.def(
+      "mimo_loop",
+      [](const System& s, const std::vector<std::string>& names) {
+        return warned_loop(s, [&] { return mimo_loop(s, names); });
+      },
+      "system"_a, "names"_a, "The loop cut at several points at once.");
   m.def("loop_points", &loop_points, "system"_a, "Names of the loop points.");
 }
 

@@ -23,7 +23,7 @@ auto set_numbers(Eigen::VectorXd Data::*vector) {
   return [vector](Data& data, const Numbers& value) { data.*vector = vector_of(value); };
 }
 
-void bind_modal_data(py::module_& m) {
+void bind_ports_of_modes(py::module_& m) {
   py::class_<ModalChild>(m, "ModalChild",
                          "A child point of a flexible body: PC from P [m]; Phi_C (6 x N), "
                          "displacements [1/sqrt(kg)] and rotations of the modes there.")
@@ -34,18 +34,47 @@ void bind_modal_data(py::module_& m) {
       .def_readwrite("name", &ModalChild::name)
       .def_property("PC", copy_of(&ModalChild::PC), set(&ModalChild::PC), "From P [m].")
       .def_property("Phi_C", copy_of(&ModalChild::Phi_C), set(&ModalChild::Phi_C), "6 x N.");
+  py::class_<ModalLine>(
+      m, "ModalLine",
+      "An edge of a flexible body as an interface: its name (of the child, or of the parent), the "
+      "body axis 0, 1, 2 along which it runs, its length [m], shapes [(component 0..5, degree)], "
+      "and Phi (shapes x N), their coordinates in the modes [1/sqrt(kg), rad/(m sqrt(kg))].")
+      .def(py::init([](const std::string& name, int axis, double length,
+                       const std::vector<std::pair<int, int>>& shapes, const Eigen::MatrixXd& Phi) {
+             ModalLine line{name, axis, length, {}, Phi};
+             for (const auto& [component, degree] : shapes)
+               line.shapes.push_back({component, degree});
+             return line;
+           }),
+           "name"_a, "axis"_a, "length"_a, "shapes"_a, "Phi"_a)
+      .def_readonly("name", &ModalLine::name)
+      .def_readonly("axis", &ModalLine::axis)
+      .def_readonly("length", &ModalLine::length, "[m]")
+      .def_property_readonly("shapes",
+                             [](const ModalLine& l) {
+                               std::vector<std::pair<int, int>> shapes;
+                               for (const LineShape& s : l.shapes)
+                                 shapes.emplace_back(s.component, s.degree);
+                               return shapes;
+                             })
+      .def_property_readonly("Phi", copy_of(&ModalLine::Phi), "shapes x N.");
+}
+
+void bind_modal_data(py::module_& m) {
   py::class_<ModalData>(
       m, "ModalData",
       "Modes of a body clamped at P, mass-normalised: omega (N) [rad/s], xi (N) [-], L_P (N x 6) "
       "[sqrt(kg), sqrt(kg) m], D_P (6 x 6) rigid mass matrix about P, children, digits of the "
-      "data. The arrays are read-only copies and `children` is a tuple of copies: to change one, "
-      "assign a new array or list.")
+      "data, lines. The arrays are read-only copies, `children` and `lines` tuples of copies: to "
+      "change one, assign a new array or list.")
       .def(py::init([](const Numbers& omega, const Numbers& xi, const Eigen::MatrixXd& L_P,
-                       const Matrix6& D_P, const std::vector<ModalChild>& children, double digits) {
-             return ModalData{vector_of(omega), vector_of(xi), L_P, D_P, children, digits};
+                       const Matrix6& D_P, const std::vector<ModalChild>& children, double digits,
+                       const std::vector<ModalLine>& lines) {
+             return ModalData{vector_of(omega), vector_of(xi), L_P, D_P, children, digits, lines};
            }),
            py::kw_only(), "omega"_a, "xi"_a, "L_P"_a, "D_P"_a,
-           "children"_a = std::vector<ModalChild>(), "digits"_a = 15.0)
+           "children"_a = std::vector<ModalChild>(), "digits"_a = 15.0,
+           "lines"_a = std::vector<ModalLine>())
       .def_property("omega", copy_of(&ModalData::omega), set_numbers(&ModalData::omega),
                     "N [rad/s].")
       .def_property("xi", copy_of(&ModalData::xi), set_numbers(&ModalData::xi), "N [-].")
@@ -54,7 +83,11 @@ void bind_modal_data(py::module_& m) {
       .def_property(
           "children", [](const ModalData& data) { return py::tuple(py::cast(data.children)); },
           set(&ModalData::children), "A tuple of copies: change one and assign them all.")
-      .def_readwrite("digits", &ModalData::digits);
+      .def_readwrite("digits", &ModalData::digits)
+      .def_property(
+          "lines", [](const ModalData& data) { return py::tuple(py::cast(data.lines)); },
+          set(&ModalData::lines), "A tuple of copies.")
+      .def_readonly("warnings", &ModalData::warnings, "For the log of compile.");
 }
 
 void bind_beams(py::module_& m) {
@@ -77,7 +110,7 @@ void bind_beams(py::module_& m) {
       .def(py::init([](double E, std::optional<double> nu, std::optional<double> G, double rho) {
              return Material{E, nu, G, rho};
            }),
-           py::kw_only(), "E"_a, "nu"_a = py::none(), "G"_a = py::none(), "rho"_a);
+           py::kw_only(), "E"_a = 0.0, "nu"_a = py::none(), "G"_a = py::none(), "rho"_a);
   py::class_<Beam>(m, "Beam",
                    "Uniform Euler-Bernoulli beam from P at the origin to C at (length, 0, 0) [m], "
                    "of equal finite elements; `modes` selects those that are kept.")
@@ -105,40 +138,6 @@ void bind_modes(py::module_& m) {
            }),
            py::kw_only(), "kept"_a = py::none(), "residual"_a = std::vector<std::string>(),
            "xi"_a = std::vector<double>(), "rayleigh"_a = py::none(), "rigid"_a = py::none());
-}
-
-void bind_meshes(py::module_& m) {
-  py::class_<fe::Mesh>(m, "Mesh", "A finite-element model, free in space: M and K (n x n), points.")
-      .def_readonly("name", &fe::Mesh::name)
-      .def_readonly("M", &fe::Mesh::M, "n x n [kg, kg m, kg m^2].")
-      .def_readonly("K", &fe::Mesh::K, "n x n [N/m, N, N m].")
-      .def_readonly("digits", &fe::Mesh::digits, "Decimal digits of M and K.");
-  m.def(
-      "read_calculix",
-      [](const std::filesystem::path& stem, const std::map<std::string, int>& interfaces) {
-        std::vector<fe::CalculixInterface> list;
-        for (const auto& [name, node] : interfaces) list.push_back({name, node});
-        return fe::read_calculix(fe::calculix_files(stem), list);
-      },
-      "stem"_a, "interfaces"_a, Unlocked(),
-      "The free mesh of stem.sti, .mas, .dof and .inp (*FREQUENCY, SOLVER=MATRIXSTORAGE); "
-      "interfaces {name: reference node}.");
-  m.def("beam_mesh", &beam_mesh, "beam"_a, "The free mesh of a beam, interfaces P and C.");
-  m.def(
-      "modal_data",
-      [](const fe::Mesh& mesh, const std::string& parent, const std::vector<std::string>& children,
-         const fe::ModeOptions& modes) { return fe::modal_data(mesh, parent, children, modes); },
-      "mesh"_a, "parent"_a, "children"_a, "modes"_a = fe::ModeOptions(), Unlocked(),
-      "Modes of the mesh clamped at the interface `parent`.");
-  m.def(
-      "modal_data", [](const Beam& beam) { return modal_data(beam); }, "beam"_a,
-      "Modes of a beam clamped at P with the child C.");
-  m.def(
-      "mesh_report", [](const fe::Mesh& mesh) { return to_string(fe::mesh_report(mesh)); },
-      "mesh"_a, "Mass properties and rigid-body check as text.");
-  m.def(
-      "modal_report", [](const ModalData& data) { return to_string(modal_report(data)); }, "data"_a,
-      "Mass, residual mass, children and effective masses as text.");
 }
 
 /// Without names asked for, those that are unread or repeat with other values are left out.
@@ -216,6 +215,7 @@ void bind_readers(py::module_& m) {
 
 void bind_fe(py::module_& m) {
   py::module_ fe = m.def_submodule("fe", "Finite-element models, files, and bodies from them.");
+  bind_ports_of_modes(m);
   bind_modal_data(m);
   bind_modes(fe);
   bind_beams(m);

@@ -1,4 +1,3 @@
-#include "python.hpp"
 #include "signals.hpp"
 
 namespace titop::python {
@@ -21,11 +20,27 @@ void bind_diagram_files(py::module_& m) {
       [](const Path& file) { return std::make_shared<Diagram>(read_diagram(file)); }, "file"_a,
       "The diagram of such a file.");
   m.def(
+      "diagram_of_model",
+      [](const StateSpace& model, const std::string& name) {
+        return std::make_shared<Diagram>(diagram_of_model(model, name));
+      },
+      "model"_a, "name"_a, "A diagram of a StateSpace alone, with its inputs and outputs.");
+  m.def(
       "to_dot", [](const Diagram& d, int fold) { return to_dot(d, DotOptions{fold}); }, "diagram"_a,
       "fold"_a = 0, "Graphviz text of a diagram; about `fold` boxes, 0: every block.");
   m.def(
       "to_dot", [](const System& s, int fold) { return to_dot(s.stage(), DotOptions{fold}); },
       "system"_a, "fold"_a = 0, "The same after all passes.");
+}
+
+template <class Model>
+void def_written(py::module_& m) {
+  m.def("write_mat", py::overload_cast<const Model&, const Path&>(&write_mat), "system"_a, "file"_a,
+        Unlocked(), "A MAT-file (version 5) with A, B, C, D and the names.");
+  m.def("write_numpy",
+        py::overload_cast<const Model&, const Path&, const std::string&>(&write_numpy), "system"_a,
+        "folder"_a, "name"_a, Unlocked(),
+        "A Python module FOLDER/NAME.py with A, B, C, D, names, transfer(s) and poles().");
 }
 
 void bind_model_files(py::module_& m) {
@@ -35,16 +50,22 @@ void bind_model_files(py::module_& m) {
         "file"_a, Unlocked(), "The same into a file.");
   m.def("write_json", py::overload_cast<const FullCertificate&, const Path&>(&write_json),
         "system"_a, "file"_a, "A full certificate as JSON.");
+  m.def("write_json", py::overload_cast<const Lft&, const Path&>(&write_json), "system"_a, "file"_a,
+        "An Lft as JSON.");
+  m.def("certificate_json", &certificate_json, "certificate"_a, "A full certificate as JSON.");
+  m.def("lft_json", &lft_json, "lft"_a, "An Lft as JSON.");
+  m.def("dense_warnings", &dense_warnings, "system"_a, Unlocked(),
+        "The log's warnings of state_space(): lost digits of A, B, C, D.");
   m.def("write_matlab", py::overload_cast<const System&, const Path&>(&write_matlab), "system"_a,
         "file"_a, Unlocked(), "A MATLAB or Octave function with the model.");
   m.def("write_matlab", py::overload_cast<const StateSpace&, const Path&>(&write_matlab),
         "system"_a, "file"_a, "The same of a StateSpace.");
   m.def("write_matlab", py::overload_cast<const Lft&, const Path&>(&write_matlab), "system"_a,
         "file"_a, "The same of an Lft, with a uss.");
-  m.def("write_mat", py::overload_cast<const System&, const Path&>(&write_mat), "system"_a,
-        "file"_a, Unlocked(), "A MAT-file of A, B, C, D and the names.");
-  m.def("write_mat", py::overload_cast<const StateSpace&, const Path&>(&write_mat), "system"_a,
-        "file"_a, "The same of a StateSpace.");
+  def_written<System>(m);
+  def_written<StateSpace>(m);
+  m.def("write_numpy", py::overload_cast<const Lft&, const Path&, const std::string&>(&write_numpy),
+        "system"_a, "folder"_a, "name"_a, "The same of an Lft, with at(parameter=value).");
   m.def(
       "write_csv",
       [](const System& s, const std::vector<double>& omega, const Path& file) {
@@ -53,36 +74,38 @@ void bind_model_files(py::module_& m) {
       "system"_a, "omega"_a, "file"_a, Unlocked(), "Frequency response as CSV, omega [rad/s].");
   m.def(
       "write_cpp",
-      [](const System& s, const Path& folder, const std::string& name, double sample_time) {
-        write(generate_cpp(s, {.name = name, .sample_time = sample_time}), folder);
+      [](const System& s, const Path& folder, const std::string& name, double sample_time,
+         const std::string& states) {
+        const auto kept = named<CppStates>(states, "states",
+                                           {{"automatic", CppStates::automatic},
+                                            {"model", CppStates::model},
+                                            {"modes", CppStates::modes}});
+        write(generate_cpp(s, {name, sample_time, kept}), folder);
       },
-      "system"_a, "folder"_a, "name"_a, "sample_time"_a = 0.0, Unlocked(),
+      "system"_a, "folder"_a, "name"_a, "sample_time"_a = 0.0, "states"_a = "automatic", Unlocked(),
       "The model as a C++17 header NAME.hpp without dependencies, and its test NAME_test.cpp; with "
-      "a sample time [s] also `step`.");
+      "a sample time [s] also `step`. states: automatic, model or modes.");
 }
 
-ReportOptions report_options(const std::string& title, const std::string& remark, bool diagrams,
-                             const LowHigh& band_hz, double until,
-                             const std::vector<std::pair<std::string, std::string>>& pairs) {
-  ReportOptions o;
-  o.title = title, o.remark = remark, o.diagrams = diagrams;
-  o.band_hz = band_hz, o.until = until, o.pairs = pairs;
-  return o;
-}
+using Pairs = std::vector<std::pair<std::string, std::string>>;
 
 void bind_reports(py::module_& m) {
   m.def(
       "report_html",
       [](const System& s, const std::string& title, const std::string& remark, bool diagrams,
-         const LowHigh& band_hz, double until,
-         const std::vector<std::pair<std::string, std::string>>& pairs) {
-        return report_html(s, report_options(title, remark, diagrams, band_hz, until, pairs));
+         int fold, const LowHigh& band_hz, double until, const Pairs& pairs, const Pairs& units,
+         int full_up_to) {
+        return report_html(
+            s, {title, remark, diagrams, fold, band_hz, until, pairs, units, full_up_to});
       },
       "system"_a, py::kw_only(), "title"_a = "", "remark"_a = "", "diagrams"_a = true,
-      "band_hz"_a = LowHigh{0, 0}, "until"_a = 0.0,
-      "pairs"_a = std::vector<std::pair<std::string, std::string>>(), Unlocked(),
-      "A report as one self-contained HTML text: diagrams (by Graphviz), poles, Bode plots, step "
-      "responses, certificate. band_hz [Hz] and until [s]: 0, by the poles.");
+      "fold"_a = ReportOptions{}.fold, "band_hz"_a = LowHigh{0, 0}, "until"_a = 0.0,
+      "pairs"_a = Pairs(), "units"_a = Pairs(), "full_up_to"_a = ReportOptions{}.full_up_to,
+      Unlocked(),
+      "A report as one self-contained HTML text: diagrams (by Graphviz, of at most `fold` boxes), "
+      "poles, Bode plots, step responses, certificate. band_hz [Hz] and until [s]: 0, by the "
+      "poles; pairs [(output, input)] to show; units [(signal, unit)]; margins and mode shapes up "
+      "to full_up_to states.");
 }
 
 PlotOptions plot_options(const std::string& title, const LowHigh& band_hz, double until) {

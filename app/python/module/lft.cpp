@@ -73,6 +73,29 @@ void bind_isolated(py::module_& m) {
       "system"_a, "ranges"_a, "The same of {name: range}, in this order.");
 }
 
+void bind_reduced(py::module_& m) {
+  py::class_<ReducedLft>(m, "ReducedLft", "An Lft whose M has fewer states, and the error of M.")
+      .def_property_readonly("lft", [](const ReducedLft& r) { return r.lft(); })
+      .def_property_readonly(
+          "bound", [](const ReducedLft& r) { return r.bound(); },
+          "The ErrorBound of M, outputs [z; y], inputs [w; u].")
+      .def("on_ray", &ReducedLft::on_ray, "omega"_a, "The s of the scene's ray at omega [rad/s].")
+      .def(
+          "error", [](const ReducedLft& r, double omega) { return r.error(omega); }, "omega"_a,
+          Unlocked(),
+          "Bound of |H - H_r|, outputs x inputs, at on_ray(omega), for all values together.")
+      .def(
+          "error",
+          [](const ReducedLft& r, double omega, const Values& values) {
+            return r.error(omega, list_of_values(values));
+          },
+          "omega"_a, "values"_a, Unlocked(), "The same at {parameter: value} alone.");
+  m.def(
+      "reduce", [](const Lft& f, const Scene& scene) { return reduce(f, scene); }, "lft"_a,
+      "scene"_a, Unlocked(),
+      "Reduces M of an Lft over the band and to the accuracy of the scene; the parameters stay.");
+}
+
 void bind_derivatives(py::module_& m) {
   py::class_<PoleSlopes>(m, "PoleSlopes", "A pole and how fast it moves with each parameter.")
       .def_readonly("s", &PoleSlopes::s, "[rad/s]")
@@ -110,6 +133,7 @@ void bind_derivatives(py::module_& m) {
 
 void bind_lft(py::module_& m) {
   bind_isolated(m);
+  bind_reduced(m);
   bind_derivatives(m);
 }
 

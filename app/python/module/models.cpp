@@ -193,10 +193,34 @@ void bind_energy(py::module_& m) {
       "block"_a, "A FlexibleBody as a port-Hamiltonian system.");
 }
 
+void bind_minimize(py::module_& m) {
+  py::class_<JudgedMode>(m, "JudgedMode", "A mode that was removed, or that is near the limit.")
+      .def_readonly("omega", &JudgedMode::omega, "|s| [rad/s].")
+      .def_readonly("states", &JudgedMode::states, "2 for a pair of poles.")
+      .def_readonly("visibility", &JudgedMode::visibility)
+      .def_readonly("bound", &JudgedMode::bound, "Possible visibility by rounding alone.")
+      .def_readonly("why", &JudgedMode::why);
+  py::class_<Minimized>(m, "Minimized", "A model without the states that have no effect.")
+      .def_readonly("model", &Minimized::model)
+      .def_readonly("order", &Minimized::order)
+      .def_readonly("notes", &Minimized::notes);
+  m.def(
+      "minimize",
+      [](const StateSpace& model, double resolution, int exact_order) {
+        return minimize(model, {.resolution = resolution, .exact_order = exact_order});
+      },
+      "model"_a, py::kw_only(), "resolution"_a = 0.0, "exact_order"_a = -1, Unlocked(),
+      "The StateSpace without modes of a visibility up to `resolution` (0: rounding level only); "
+      "exact_order: the minimal order, if it is known.");
+}
+
 void bind_certificates(py::module_& m) {
   py::class_<Certificate>(m, "Certificate", "The checks of a system; every number dimensionless.")
       .def_readonly("residual", &Certificate::residual,
                     "Largest backward error of all equations as written.")
+      .def_readonly("dense_against_factors", &Certificate::dense_against_factors,
+                    "Dense model against the factors, for random x and u; negative: not "
+                    "evaluated.")
       .def_readonly("dense_error", &Certificate::dense_error,
                     "Error of A, B, C, D by rounding of their entries; negative: not evaluated.")
       .def_readonly("weakest_pivot", &Certificate::weakest_pivot)
@@ -207,6 +231,12 @@ void bind_certificates(py::module_& m) {
       .def_readonly("lowest", &OrderVerdict::lowest)
       .def_readonly("highest", &OrderVerdict::highest)
       .def_readonly("exact", &OrderVerdict::exact, "Decided by exact arithmetic.")
+      .def_readonly("to_fewer", &OrderVerdict::to_fewer,
+                    "Least visibility among the kept modes: error of removing the next.")
+      .def_readonly("to_more", &OrderVerdict::to_more,
+                    "Largest visibility among the removed modes.")
+      .def_readonly("removed", &OrderVerdict::removed)
+      .def_readonly("undecided", &OrderVerdict::undecided)
       .def_property_readonly("decided", &OrderVerdict::decided)
       .def("__str__", [](const OrderVerdict& v) { return to_string(v); });
   py::class_<FullCertificate>(m, "FullCertificate",
@@ -237,6 +267,7 @@ void bind_models(py::module_& m) {
   bind_state_space(m);
   bind_energy(m);
   bind_certificates(m);
+  bind_minimize(m);
   def_model_of<SpringMass>(m);
   def_model_of<RigidBody>(m);
   def_model_of<FlexibleBody>(m);

@@ -30,8 +30,11 @@ PYBIND11_MODULE(_titop, m) {
   bind_mounting(m);
   bind_nodes(m);
   bind_fe(m);
+  bind_plates(m);
   bind_bodies(m);
+  bind_lines(m);
   bind_joints(m);
+  bind_hinge_line(m);
   bind_rotors(m);
   bind_models(m);
   bind_system(m);
@@ -39,6 +42,8 @@ PYBIND11_MODULE(_titop, m) {
   bind_control(m);
   bind_margins(m);
   bind_reduction(m);
+  bind_distributed(m);
+  bind_shapes(m);
   bind_lft(m);
   bind_files(m);
 }

@@ -147,14 +147,14 @@ class Ports {
   py::class_<PortsOf<Handle>> type_;
 };
 
-/// Diagram.add for one more spec, whose ports in Python are those of Handle.
-template <class Spec, class Handle = typename Spec::Handle>
+/// Diagram.add for one more spec.
+template <class Spec>
 void add_to_diagram(py::module_& m) {
   py::class_<Diagram, DiagramPtr>(m.attr("Diagram"))
       .def(
           "add",
           [](const DiagramPtr& d, std::string name, const Spec& spec) {
-            return PortsOf<Handle>{d, d->add(std::move(name), spec, here())};
+            return PortsOf<typename Spec::Handle>{d, d->add(std::move(name), spec, here())};
           },
           "name"_a, "block"_a);
 }

@@ -100,6 +100,17 @@ py::list swept(const System& system, const std::vector<Values>& points, const py
 void bind_simulation(py::module_& m) {
   bind_excitation(m);
   bind_simulate(m);
+  m.def(
+      "hold",
+      [](const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, double h) {
+        Hold held = hold(A, B, h);
+        return std::pair(std::move(held.A), std::move(held.B));
+      },
+      "A"_a, "B"_a, "h"_a, Unlocked(),
+      "(exp(A h), integral of exp(A t) B) at the step h [s]: exact for inputs held over it.");
+  m.def("held_response", &held_response, "model"_a, "h"_a, "inputs"_a, Unlocked(),
+        "Outputs (outputs x steps) of a StateSpace at t = 0, h, 2 h, ... [s] from x = 0 for inputs "
+        "(inputs x steps) held over each step.");
   m.def("sweep", &swept, "system"_a, "points"_a, "visit"_a, "threads"_a = 0,
         "[visit(i, system at points[i])] for a list of {parameter: value}, on all cores: Python's "
         "lock is held in `visit` but not in the System's own computations.");

@@ -67,6 +67,9 @@ void def_models(SystemType& type) {
           },
           Unlocked(), "The dense model before minimal realization.")
       .def(
+          "descriptor", [](const System& s) { return s.descriptor(); }, Unlocked(),
+          "The model before elimination, sparse: O(bodies) entries.")
+      .def(
           "poles",
           [](const System& s) {
             std::vector<Pole> list;
@@ -102,6 +105,11 @@ void def_notes(SystemType& type) {
           },
           "{name: value} of the diagram's parameters.")
       .def_property_readonly("notes", [](const System& s) { return s.notes(); })
+      .def_property_readonly(
+          "dense_notes", [](const System& s) { return s.dense_notes(); },
+          "Notes on the dense model; those of dense_log().")
+      .def_property_readonly(
+          "seconds", [](const System& s) { return s.seconds(); }, "[(pass, time [s])].")
       .def("log", &System::log, Unlocked(), "Results of the passes, one per line.")
       .def("dense_log", &System::dense_log, Unlocked(), "Notes on the dense model, one per line.")
       .def(
@@ -119,9 +127,26 @@ void def_notes(SystemType& type) {
       });
 }
 
+void bind_descriptor(py::module_& m) {
+  py::class_<Descriptor>(m, "Descriptor",
+                         "The model before elimination: E vdot = A v + B u, y = C v + D u, v the "
+                         "states, then the interface unknowns. The matrices are those of "
+                         "scipy.sparse: reading them needs SciPy.")
+      .def_readonly("E", &Descriptor::E, "diag(I, 0).")
+      .def_readonly("A", &Descriptor::A)
+      .def_readonly("B", &Descriptor::B)
+      .def_readonly("C", &Descriptor::C)
+      .def_readonly("D", &Descriptor::D)
+      .def_readonly("states", &Descriptor::states, "Number of states.")
+      .def_readonly("names", &Descriptor::names, "Of v.")
+      .def_readonly("inputs", &Descriptor::inputs)
+      .def_readonly("outputs", &Descriptor::outputs);
+}
+
 }  // namespace
 
 void bind_system(py::module_& m) {
+  bind_descriptor(m);
   SystemType type(m, "System",
                   "A compiled diagram: the elimination plan, the factors and the blocks' data. "
                   "Immutable; may be shared between threads.");
