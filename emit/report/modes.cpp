@@ -235,11 +235,12 @@ Plot mode_plot(const ModeShapes& shapes, std::size_t which, const ModePlotOption
 
 std::string modes_section(const Subject& s) {
   if (!has_points(s.system)) return {};
-  if (s.system.order() > s.options.full_up_to)
+  constexpr int kCheaper = 4;  // than the margins and the full certificate
+  if (s.system.order() > kCheaper * s.options.full_up_to)
     return fmt::format(
-        "<p class=\"note\">Not drawn: {} states are more than {} (ReportOptions::full_up_to). "
-        "<code>titop draw --mode</code> has no limit.</p>\n",
-        s.system.order(), s.options.full_up_to);
+        "<p class=\"note\">Not drawn: {} states are more than {} times {} "
+        "(ReportOptions::full_up_to). <code>titop draw --mode</code> has no limit.</p>\n",
+        s.system.order(), kCheaper, s.options.full_up_to);
   const std::vector<int> modes = shown_modes(s);
   if (modes.empty()) return {};
   std::string drawn;

@@ -71,10 +71,13 @@ figure.plot > svg { width: 100%; height: auto; display: block; }
 .legend li { display: flex; align-items: center; gap: 7px; overflow-wrap: anywhere; }
 .sample { flex: none; }
 figure.diagram { margin: 10px 0 24px; }
-.canvas { overflow: auto; max-height: 86vh; border: 1px solid var(--rule); border-radius: 8px; padding: 10px;
+.canvas { overflow: auto; border: 1px solid var(--rule); border-radius: 8px; padding: 10px;
   text-align: center; }
-svg.drawing { height: auto; max-width: 100%; }
-.large svg.drawing { max-width: none; }
+svg.drawing { height: auto; max-width: 100%; max-height: 88vh; display: block; margin: auto; }
+.scaled { display: none; }
+figure.diagram:target svg.drawing { max-width: none; max-height: none; }
+figure.diagram:target .full { display: none; } figure.diagram:target .scaled { display: inline; }
+summary { cursor: pointer; color: var(--accent); font-size: 13.5px; }
 figure.plot text { fill: var(--ink); }
 .mark { stroke: var(--c2); stroke-width: 1.8; }
 figure.plot .tick { font-size: 12px; fill: var(--soft); font-variant-numeric: tabular-nums; }
@@ -94,7 +97,7 @@ footer { margin-top: 48px; border-top: 1px solid var(--rule); padding-top: 10px;
 @media print {
   body { font-size: 9.5pt; line-height: 1.4; }
   main { max-width: none; padding: 0; }
-  nav { display: none; }
+  nav, .full, figure.diagram:target .scaled { display: none; }
   h1 { font-size: 20pt; } h2 { font-size: 14pt; margin-top: 22pt; } h3 { font-size: 11pt; }
   h4 { font-size: 9pt; }
   h2, h3, h4, h2 + p, h3 + p, thead { break-after: avoid; } tr, figure, .tile, li { break-inside: avoid; }
@@ -104,9 +107,9 @@ footer { margin-top: 48px; border-top: 1px solid var(--rule); padding-top: 10px;
   figure.plot { border-color: #bbb; padding: 6pt 6pt 2pt; }
   .tiles { grid-template-columns: repeat(5, 1fr); gap: 6pt; } .tile b { font-size: 12.5pt; }
   .tile span { font-size: 7.5pt; } .wide { min-width: 0; }
-  .table, .canvas { overflow: visible; max-height: none; }
+  .table, .canvas { overflow: visible; }
   .canvas { border: 0; padding: 0; }
-  svg.drawing, .large svg.drawing { max-width: 100%; max-height: 225mm; width: auto; }
+  svg.drawing, figure.diagram:target svg.drawing { max-width: 100%; max-height: 225mm; width: auto; }
 }
 )";
 

@@ -213,6 +213,19 @@ std::string grid(const Scale& across, const Scale& up, double top, int height) {
   return text;
 }
 
+/// Along the frame; a longer text in smaller letters.
+std::string y_label(const std::string& title, double middle, int height) {
+  constexpr double kSize = 12.5, kLetter = 0.56;  // [px], mean width over size
+  const auto letters = std::count_if(title.begin(), title.end(),
+                                     [](char c) { return (c & 0xC0) != 0x80; });  // of UTF-8
+  const double fits = (height + kTop + kGap) / (kLetter * static_cast<double>(letters));
+  const std::string small =
+      fits >= kSize ? "" : fmt::format(R"( style="font-size:{:.1f}px")", std::max(fits, 7.0));
+  return fmt::format(
+      R"-(<text class="y-label"{2} x="14" y="{0}" text-anchor="middle" transform="rotate(-90 14 {0})">{1}</text>)-",
+      middle, diagram::html(title), small);
+}
+
 std::string draw(const Plot& plot, const Frame& frame, const Scale& across, double top) {
   const Scale up = scale_of(frame.y, frame.curves);
   std::string text = grid(across, up, top, frame.height);
@@ -238,11 +251,7 @@ std::string draw(const Plot& plot, const Frame& frame, const Scale& across, doub
         fmt::format(R"(<text class="tick" x="{:.1f}" y="{:.1f}" text-anchor="middle">{}</text>)",
                     kLeft + kInner * across.place(t.x),
                     top + frame.height * (1 - up.place(t.y)) + 4, diagram::html(t.text));
-  if (frame.y.hidden) return text;
-  text += fmt::format(
-      R"-(<text class="y-label" x="14" y="{0}" text-anchor="middle" transform="rotate(-90 14 {0})">{1}</text>)-",
-      middle, diagram::html(up.title()));
-  return text;
+  return frame.y.hidden ? text : text + y_label(up.title(), middle, frame.height);
 }
 
 std::string legend(const Plot& plot) {

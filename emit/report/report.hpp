@@ -27,8 +27,8 @@ struct ReportOptions {
   /// Units of inputs and outputs, if they do not follow from the connected ports (behind a gain, of
   /// a controller's signals): {"r", "rad"}, or of one scalar, {"U(3)", "N"}.
   std::vector<std::pair<std::string, std::string>> units = {};
-  /// Up to this many states (System::order()) the full certificate, mode shapes and the margins of
-  /// loop points are made, too: O(n^3).
+  /// Up to this many states (System::order()) the full certificate and the margins of loop points
+  /// are made, too, and mode shapes up to four times as many: O(n^3).
   int full_up_to = 100;
   /// interface_bracket of the same scene: a section shows how much the lumping of its interfaces of
   /// many nodes costs, mode by mode.

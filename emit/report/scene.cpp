@@ -72,16 +72,18 @@ std::string blocks(const Graph& g) {
   return text + "</tbody></table></div>\n";
 }
 
-std::string diagram(const Subject& s, const Stage& stage, const char* title,
+/// A drawing scaled to the page, and links to its full size and back.
+std::string diagram(const Subject& s, const Stage& stage, const char* id, const char* title,
                     const std::string& caption) {
   const std::string dot_text = to_dot(stage, {.fold = s.options.fold});
   const std::string svg =
       drawing(dot_text, fmt::format("diagram of {}, {}", stage.now().name, title));
-  const bool large = stage.now().nodes.size() > 12;
   return fmt::format(
-      "<h3>{}</h3>\n<figure class=\"diagram\"><div class=\"canvas{}\">{}</div><figcaption>{}"
-      "</figcaption></figure>\n",
-      title, large ? " large" : "", svg, caption);
+      "<h3 id=\"{1}-scaled\">{0}</h3>\n<figure class=\"diagram\" id=\"{1}\"><div "
+      "class=\"canvas\">{2}</div>"
+      "<figcaption>{3} <a class=\"full\" href=\"#{1}\">Full size</a><a class=\"scaled\" "
+      "href=\"#{1}-scaled\">Scaled to the page</a></figcaption></figure>\n",
+      title, id, svg, caption);
 }
 
 std::string diagrams(const Subject& s, const Graph& g) {
@@ -92,10 +94,10 @@ std::string diagrams(const Subject& s, const Graph& g) {
   const std::string added =
       after.motions.empty() ? ""
                             : " Integrators were added for motions that no other state determines.";
-  return diagram(s, before, "As written",
+  return diagram(s, before, "as-written", "As written",
                  "Filled arrows carry accelerations, open ones forces or wrenches; thick lines are "
                  "vectors, with their size and frame.") +
-         diagram(s, after, "After the passes",
+         diagram(s, after, "after-passes", "After the passes",
                  "Coloured: algebraic loops, numbered; dark heads: inverted channels; grey and "
                  "dashed: set aside, without effect on any output." +
                      added);
@@ -110,43 +112,6 @@ std::string scene_section(const Subject& s) {
          "<h3>Outputs</h3>\n" +
          ports(g.outputs, s.outputs, "output", [&](int i) { return reads(s.system.stage(), i); }) +
          diagrams(s, g);
-}
-
-std::string poles_section(const Subject& s) {
-  int gone = 0;
-  for (const JudgedMode& m : s.system.order_verdict().removed) gone += m.states;
-  const std::string left_out =
-      gone == 0 ? ""
-                : fmt::format(
-                      "<p>The model is without {} that no transfer shows (see <a "
-                      "href=\"#order\">Order</a>): their poles are not listed here.</p>\n",
-                      count(static_cast<std::size_t>(gone), "state"));
-  if (s.poles.empty())
-    return "<p>The model has no states: outputs follow inputs at once.</p>\n" + left_out;
-  std::string text =
-      left_out +
-      "<p>One line per pole, or per pair of conjugate poles; slow ones first. Participation "
-      "factors "
-      "are summed over the states of each block, down to 5 %.</p>\n<div class=\"table\"><table "
-      "class=\"poles\">\n<thead>" +
-      row({"", "frequency [Hz]", "[rad/s]", "damping [%]", "real part [1/s]",
-           "blocks that take part"},
-          {"n", "n", "n", "n", "n", "wide"}, "th") +
-      "</thead>\n<tbody>\n";
-  for (std::size_t i = 0; i < s.poles.size() && i < kRows; ++i) {
-    const Pole& p = s.poles[i];
-    std::string shares;
-    for (const auto& [name, share] : p.blocks)
-      shares += fmt::format(
-          R"(<span class="share"><i class="bar" style="width:{:.0f}px"></i>{} {:.0f} %</span> )",
-          60 * share, diagram::html(name), 100 * share);
-    if (p.unlike_bodies()) shares += fmt::format("(bodies: xi {})", xi_of_bodies(p));
-    text += row({fmt::format("{}{}", i + 1, p.pair ? "" : " (real)"), number(p.hertz, 6),
-                 number(p.omega, 6), p.omega > 0 ? number(100 * p.damping, 4) : "–",
-                 number(p.s.real(), 4), shares},
-                {"n", "n", "n", "n", p.s.real() > 1e-9 * p.omega ? "n bad" : "n", "wide"});
-  }
-  return text + "</tbody></table></div>\n" + more(s.poles.size(), "poles");
 }
 
 }  // namespace titop::report

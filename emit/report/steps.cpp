@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <titop/analysis/simulation/simulate.hpp>
 #include <titop/emit/report/figures.hpp>
+#include <titop/emit/report/html.hpp>
 #include <titop/emit/report/plot.hpp>
 #include <titop/graph/linalg/index.hpp>
 
@@ -24,57 +26,112 @@ double round_up(double t) {
   return 10 * unit;
 }
 
+/// How much of a step response belongs to a pole. On the positive real axis G(s) is the mean of the
+/// response over a time 1 / s: without resonances, and with a step at the modulus of each pole that
+/// takes part.
+class Shares {
+ public:
+  explicit Shares(const Subject& s) {
+    const std::vector<Pole> poles = moving(s.poles);
+    if (poles.empty()) return;
+    const double low = poles.front().omega / kAround, high = poles.back().omega * kAround;
+    const double decades = std::log10(high / low);
+    const int count = static_cast<int>(std::min(10 * decades, 300.0)) + 2;
+    for (int i = 0; i < count; ++i) {
+      const double at = low * std::pow(10.0, decades * i / (count - 1));
+      try {
+        G_.push_back(s.system.transfer(at).real());
+        s_.push_back(at);
+      } catch (const Error& error) {  // a pole on the right
+        if (!error.has(Code::singular)) throw;
+      }
+    }
+  }
+
+  /// The change of G around the pole, relative to the largest |G|; 0 to 2.
+  double of(const Pole& p, const IoPair& pair) const {
+    double low = HUGE_VAL, high = -HUGE_VAL, largest = 0;
+    for (std::size_t i = 0; i < s_.size(); ++i) {
+      const double g = G_[i](pair.output, pair.input);
+      largest = std::max(largest, std::abs(g));
+      if (s_[i] < p.omega / kAround * kNearly || s_[i] > p.omega * kAround / kNearly) continue;
+      low = std::min(low, g), high = std::max(high, g);
+    }
+    return largest > 0 && high > low ? (high - low) / largest : 0;
+  }
+
+ private:
+  static constexpr double kAround = 4, kNearly = 1 - 1e-9;
+  std::vector<double> s_;
+  std::vector<MatrixXd> G_;
+};
+
 struct TimeGrid {
   double until = 1;
   int steps = 500;
   bool coarse = false;  ///< the fastest modes turn between steps
 };
 
-/// Eight periods of the slowest oscillation, six time constants of the slowest decay, at most eight
-/// of the fastest growth.
-TimeGrid time_grid(const Subject& s) {
+/// The poles that have an eighth of one of these responses; all of them, if none has.
+std::vector<Pole> shown_poles(const Subject& s, const Shares& shares,
+                              const std::vector<IoPair>& pairs) {
+  constexpr double kPart = 0.125;
+  const std::vector<Pole> all = moving(s.poles);
+  std::vector<Pole> shown;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(shown), [&](const Pole& p) {
+    return std::any_of(pairs.begin(), pairs.end(),
+                       [&](const IoPair& pair) { return shares.of(p, pair) >= kPart; });
+  });
+  return shown.empty() ? all : shown;
+}
+
+/// Of the poles that these responses show eight periods of the slowest oscillation and six time
+/// constants of the slowest decay; of all poles at most eight of the fastest growth.
+TimeGrid time_grid(const Subject& s, const Shares& shares, const std::vector<IoPair>& pairs) {
   TimeGrid c;
   double swing = 0, decay = 0, grow = 0;
-  const std::vector<Pole> list = moving(s.poles);
-  for (const Pole& p : list) {
+  for (const Pole& p : shown_poles(s, shares, pairs)) {
     if (p.pair) swing = std::max(swing, 8 * kTwoPi / p.omega);
     if (!p.pair && p.s.real() < 0) decay = std::max(decay, -6 / p.s.real());
-    grow = std::max(grow, p.s.real() > 1e-9 * p.omega ? p.s.real() : 0);
   }
+  const std::vector<Pole> all = moving(s.poles);
+  for (const Pole& p : all) grow = std::max(grow, p.s.real() > 1e-9 * p.omega ? p.s.real() : 0);
   double until = std::max(swing, swing > 0 ? std::min(decay, 10 * swing) : decay);
   if (grow > 0) until = std::min(until > 0 ? until : HUGE_VAL, 8 / grow);
   c.until = s.options.until > 0 ? s.options.until : until > 0 ? round_up(until) : 1;
-  const double fastest = list.empty() ? 0 : list.back().omega;
+  const double fastest = all.empty() ? 0 : all.back().omega;
   const double wanted = c.until * fastest / kTwoPi * 12;
   c.steps = static_cast<int>(std::clamp(wanted, 500.0, 5000.0));
   c.coarse = wanted > 5000;
   return c;
 }
 
-/// Responses to a unit step on one input.
-struct Steps {
+/// The responses to a unit step on one input, to the end of the time grid.
+struct Step {
   std::vector<double> time;
-  std::map<int, MatrixXd> of;  ///< per input: outputs x times
-  Stepper stepper = Stepper::exact;
-  double error = 0;  ///< of all outputs, see Trajectory::error
+  MatrixXd y;  ///< outputs x times
 };
 
-Steps steps(const Subject& s, const std::vector<IoPair>& pairs, const TimeGrid& c) {
-  Steps result;
-  for (const IoPair& p : pairs) {
-    if (result.of.count(p.input)) continue;
-    VectorXd u = VectorXd::Zero(static_cast<Index>(s.inputs.size()));
-    u(p.input) = 1;
-    const Trajectory t = simulate(
-        s.system, Excitation::step(u),
+/// Simulations, one for each input and end.
+struct Steps {
+  const Subject& subject;
+  std::map<std::pair<int, double>, Step> done = {};
+  Stepper stepper = Stepper::exact;
+  double error = 0;  ///< of all outputs, see Trajectory::error
+
+  const Step& of(int input, const TimeGrid& c) {
+    const auto [place, isnew] = done.try_emplace({input, c.until});
+    if (!isnew) return place->second;
+    VectorXd u = VectorXd::Zero(static_cast<Index>(subject.inputs.size()));
+    u(input) = 1;
+    Trajectory t = simulate(
+        subject.system, Excitation::step(u),
         {.step = c.until / c.steps, .until = c.until, .accuracy = HUGE_VAL});  // in the report
-    result.time = t.time;
-    result.stepper = t.stepper;
-    if (t.error.size() > 0) result.error = std::max(result.error, t.error.maxCoeff());
-    result.of[p.input] = t.y;
+    stepper = t.stepper;
+    if (t.error.size() > 0) error = std::max(error, t.error.maxCoeff());
+    return place->second = {std::move(t.time), std::move(t.y)};
   }
-  return result;
-}
+};
 
 /// Of steps by the matrix exponential: of A, B, C, D, whose entries are rounded.
 std::string exact_text(double error) {
@@ -84,6 +141,14 @@ std::string exact_text(double error) {
       "by the matrix exponential of A, B, C, D, whose rounding changes the outputs by up to {:.1e} "
       "of their largest values.",
       error);
+}
+
+std::string method(const Steps& all) {
+  if (all.stepper == Stepper::exact) return exact_text(all.error);
+  return fmt::format(
+      "by the implicit midpoint rule through the factors: steps of twice the size change the "
+      "outputs by up to {:.1e} of their largest values.",
+      all.error);
 }
 
 /// If the start is far larger than the rest, the frame shows the rest, and the caption gives the
@@ -105,7 +170,7 @@ void cut_start(Plot& plot) {
                              high, plot.frames.front().y.unit);
 }
 
-Plot step_plot(const Subject& s, const Steps& all, const std::vector<IoPair>& pairs) {
+Plot step_plot(const Subject& s, Steps& all, const TimeGrid& c, const std::vector<IoPair>& pairs) {
   const ScalarSignal& input = s.inputs[at(pairs.front().input)];
   const ScalarSignal& output = s.outputs[at(pairs.front().output)];
   Plot plot{.title = fmt::format("{} [{}] to a step of 1 {} on {}",
@@ -118,12 +183,13 @@ Plot step_plot(const Subject& s, const Steps& all, const std::vector<IoPair>& pa
             .frames = {{.y = {.label = "response", .unit = or_users(output.unit)},
                         .curves = {},
                         .height = 200}}};
-  plot.x.high = all.time.back();
+  plot.x.high = c.until;
   for (const IoPair& p : pairs) {
-    const auto row = all.of.at(p.input).row(p.output);
+    const Step& step = all.of(p.input, c);
+    const auto row = step.y.row(p.output);
     plot.labels.push_back(
         fmt::format("{}, step on {}", s.outputs[at(p.output)].name, s.inputs[at(p.input)].name));
-    plot.x_data.push_back(all.time);
+    plot.x_data.push_back(step.time);
     plot.frames.front().curves.emplace_back(row.begin(), row.end());
   }
   cut_start(plot);
@@ -133,33 +199,36 @@ Plot step_plot(const Subject& s, const Steps& all, const std::vector<IoPair>& pa
 }  // namespace
 
 Plot step_plot(const Subject& s, const std::vector<IoPair>& pairs) {
-  return step_plot(s, steps(s, pairs, time_grid(s)), pairs);
+  Steps all{s};
+  return step_plot(s, all, time_grid(s, Shares(s), pairs), pairs);
 }
 
 std::string step_plots(const Subject& s, const std::vector<IoPair>& pairs) {
   auto figures = by_figure(s, pairs);
   const std::size_t count = figures.size();
   figures.resize(std::min(count, kFigures));
-  std::vector<IoPair> shown;
-  for (const auto& f : figures) shown.insert(shown.end(), f.begin(), f.end());
-  const TimeGrid c = time_grid(s);
-  const Steps all = steps(s, shown, c);
-  std::string text = fmt::format(
-      "<p>All states at rest, then a unit step at time 0. {} steps of {:.4g} s, {}{}</p>\n"
-      "<div class=\"figures\">\n",
-      c.steps, c.until / c.steps,
-      all.stepper == Stepper::exact
-          ? exact_text(all.error)
-          : fmt::format(
-                "by the implicit midpoint rule through the factors, of half that size: steps "
-                "of twice the size change the outputs by up to {:.1e} of their largest "
-                "values.",
-                all.error),
-      c.coarse ? " The fastest modes turn more than once in twelve steps: the plots show their "
-                 "range, not every swing."
-               : "");
-  for (const auto& f : figures) text += figure(step_plot(s, all, f));
-  return text + "</div>\n" + left_out(count, "ask for pairs by ReportOptions::pairs");
+  const Shares shares(s);
+  Steps all{s};
+  std::string drawn;
+  bool coarse = false;
+  for (const auto& f : figures) {
+    const TimeGrid c = time_grid(s, shares, f);
+    drawn += figure(step_plot(s, all, c, f));
+    coarse = coarse || c.coarse;
+  }
+  const std::string end = s.options.until > 0
+                              ? fmt::format("until {} s", number(s.options.until))
+                              : "until the modes with an eighth of the response have turned eight "
+                                "times or decayed";
+  return fmt::format(
+             "<p>All states at rest, then a unit step at time 0, {}; {}{}</p>\n<div "
+             "class=\"figures\">\n{}</div>\n",
+             end, method(all),
+             coarse ? " The fastest modes turn more than once in twelve steps: the plots show "
+                      "their range, not every swing."
+                    : "",
+             drawn) +
+         left_out(count, "ask for pairs by ReportOptions::pairs");
 }
 
 }  // namespace titop::report

@@ -62,6 +62,7 @@ std::vector<UnitGroup> groups(const std::vector<ScalarSignal>& scalars) {
 std::string or_users(const std::string& unit) { return unit.empty() ? "user's unit" : unit; }
 
 std::string ratio(const std::string& output_unit, const std::string& input_unit) {
+  if (output_unit.empty() && input_unit.empty()) return "user's units";
   const bool product = input_unit.find(' ') != std::string::npos;
   return fmt::format("{} / {}{}{}", or_users(output_unit), product ? "(" : "", or_users(input_unit),
                      product ? ")" : "");

@@ -31,7 +31,7 @@ struct IoPair {
   int output_group = 0, input_group = 0;
 };
 
-/// "m/s² / N"; an unknown unit is the user's.
+/// "m/s² / N"; an unknown unit is the user's, "rad / user's unit"; both: "user's units".
 std::string ratio(const std::string& output_unit, const std::string& input_unit);
 std::string or_users(const std::string& unit);
 

@@ -123,6 +123,30 @@ TEST_CASE("poles are the eigenvalues of M and K, with shares of the blocks that 
   }
 }
 
+TEST_CASE("poles beyond the band are folded, and of many without a band all but the slowest") {
+  // 50 masses in a row on a wall: omega_k = 2 sin((2 k - 1) pi / 202), k = 1 ... 50.
+  Diagram d{"row"};
+  auto u = d.input("u");
+  std::vector<SpringMass::Handle> z;
+  for (int i = 1; i <= 50; ++i) z.push_back(d.add(fmt::format("z{}", i), SpringMass{}));
+  ground(z.front());
+  for (std::size_t i = 1; i < z.size(); ++i) mount(z[i], z[i - 1].child);
+  z.back().child.force += u;
+  d.output("x") = z.front().stretch;
+  const System system = compile(d);
+  const auto listed = [&](const ReportOptions& options) {
+    const std::string text = section(report_html(system, options), "poles");
+    CHECK(between(text, "<details>", "</details>").size() == 1);
+    CHECK(cells(text).size() == 50);
+    return cells(text.substr(0, text.find("<details>"))).size();
+  };
+  CHECK(listed(kNoDiagrams) == 24);
+  const double hertz = 2 * std::sin(17 * std::numbers::pi / 202) / (2 * std::numbers::pi);  // k = 9
+  CHECK(listed({.diagrams = false, .band_hz = {0.001, 1.01 * hertz}}) == 9);
+  CHECK(
+      between(section(report_html(five_masses(), kNoDiagrams), "poles"), "<details>", "<").empty());
+}
+
 TEST_CASE("removed states, with the reason: twin masses swing against each other unseen") {
   Five k = kStiffnesses;
   k[4] = k[3] / kMasses[3] * kMasses[4];
@@ -233,7 +257,7 @@ TEST_CASE("a start far outside of the rest is cut, and the caption has its range
   z.child.force = u;
   d.output("a") = z.child.accel;  // 1 at first, less than 1e-4 after a tenth of a second
   d.output("x") = z.position;     // slow: no such start
-  const std::string page = report_html(compile(d), kNoDiagrams);
+  const std::string page = report_html(compile(d), {.diagrams = false, .until = 600});
   const auto captions = between(section(page, "time"), "<figcaption>", "</figcaption>");
   REQUIRE(captions.size() == 1);
   CHECK(has_name(captions.front(), "1 m/s²"));

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <titop/emit/report/figures.hpp>
 #include <titop/emit/report/html.hpp>
 #include <titop/emit/report/plot.hpp>
 #include <titop/emit/report/program.hpp>
@@ -108,6 +109,38 @@ TEST_CASE("numbers: powers of ten only where they are small or large, never C's 
   CHECK(report::number(1.25e-5, 3) == "1.25·10⁻⁵");
   CHECK(report::number(-3e16, 2) == "-3·10¹⁶");
   CHECK(report::number(0) == "0");
+}
+
+TEST_CASE("the end of a step response: that of its own modes, without slow ones of little effect") {
+  // y = 1 / (s + 1) + share / (5000 s + 1) to a step of u; and the slow part alone.
+  const auto ends = [](double share) {
+    Diagram d{"two lags"};
+    auto u = d.input("u");
+    const auto lag = [&](const char* name, double rate) {
+      return d.add(name, Lti{.A = Eigen::MatrixXd::Constant(1, 1, -rate),
+                             .B = Eigen::MatrixXd::Constant(1, 1, rate),
+                             .C = Eigen::MatrixXd::Constant(1, 1, 1)});
+    };
+    auto fast = lag("fast", 1), slow = lag("slow", 1.0 / 5000);
+    fast.in = u, slow.in = u;
+    d.output("y") = fast.out + share * slow.out;
+    d.output("z") = slow.out;
+    const System system = compile(d);
+    const ReportOptions options{};
+    const report::Subject s = report::subject(system, options);
+    const auto end = [&](int output) { return report::step_plot(s, {{output, 0, 0, 0}}).x.high; };
+    return std::pair(end(0), end(1));
+  };
+  // Six time constants, rounded up to 1, 2 or 5 times a power of ten.
+  CHECK(ends(0.05) == std::pair(10.0, 5e4));
+  CHECK(ends(0.5) == std::pair(5e4, 5e4));
+}
+
+TEST_CASE("a long label of the y axis is smaller, as long as the frame") {
+  report::Plot plot = one_curve({0, 1}, {0, 1});
+  CHECK(figure(plot).find("font-size") == std::string::npos);
+  plot.frames.front().y.unit = "a unit of forty letters, each of them one";
+  CHECK(between(figure(plot), "class=\"y-label\" style=\"font-size:", "px\"").size() == 1);
 }
 
 TEST_CASE("frequencies stay in the band, and are closer at the poles in it") {
