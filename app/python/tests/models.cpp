@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -15,6 +16,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <numbers>
 #include <random>
@@ -22,12 +24,20 @@
 #include <sstream>
 #include <string>
 #include <titop/titop.hpp>
+#include <vector>
+#ifdef TITOP_NLOPT
+#include <nlopt.hpp>
+#include <optional>
+
+#include "by_hand/codesign.hpp"
+#endif
 
 #include "by_hand/by_hand.hpp"
 #include "scenes/cmg.hpp"
 #include "scenes/satellite.hpp"
 #include "scenes/satellite_by_hand.hpp"
 #include "scenes/sloshing.hpp"
+#include "scenes/solar_array.hpp"
 #include "scenes/solar_array_drive.hpp"
 #include "scenes/wheels.hpp"
 
@@ -38,17 +48,29 @@ std::map<std::string, int> seen;
 int left = 0;  ///< calls of `compile` before the example is stopped
 struct Done {};
 
-/// N.json: the diagram; N.bin: sizes and entries of A, B, C, D, column by column.
-void write(const titop::Diagram& d, const titop::StateSpace& m) {
+/// A, B, C, D; of distributed bodies, which have none, a transfer's real and imaginary part.
+std::vector<Eigen::MatrixXd> matrices(const titop::System& s) {
+  try {
+    const titop::StateSpace& m = s.state_space();
+    return {m.A, m.B, m.C, m.D};
+  } catch (const titop::Error& error) {
+    if (error.mistakes().front().code != titop::Code::not_rational) throw;
+    const Eigen::MatrixXcd H = s.transfer({2, 60});
+    return {H.real(), H.imag()};
+  }
+}
+
+/// N.json: the diagram; N.bin: sizes and entries of its matrices, column by column.
+void write(const titop::Diagram& d, const std::vector<Eigen::MatrixXd>& model) {
   const std::string text = titop::diagram_json(d);
   if (const auto [place, isnew] = seen.try_emplace(text, static_cast<int>(seen.size())); isnew) {
     const std::string name = std::to_string(place->second);
     std::ofstream(folder / (name + ".json"), std::ios::binary) << text;
     std::ofstream file(folder / (name + ".bin"), std::ios::binary);
-    for (const Eigen::MatrixXd* matrix : {&m.A, &m.B, &m.C, &m.D}) {
-      const std::int64_t sizes[] = {matrix->rows(), matrix->cols()};
+    for (const Eigen::MatrixXd& matrix : model) {
+      const std::int64_t sizes[] = {matrix.rows(), matrix.cols()};
       file.write(reinterpret_cast<const char*>(sizes), sizeof sizes);
-      file.write(reinterpret_cast<const char*>(matrix->data()), 8 * matrix->size());
+      file.write(reinterpret_cast<const char*>(matrix.data()), 8 * matrix.size());
     }
   }
   if (--left == 0) throw Done();
@@ -56,21 +78,32 @@ void write(const titop::Diagram& d, const titop::StateSpace& m) {
 
 titop::System compile(const titop::Diagram& d, const titop::Options& options = {}) {
   titop::System s = titop::compile(d, options);
-  write(d, s.state_space());
+  write(d, matrices(s));
   return s;
 }
 
 titop::ReducedSystem compile(const titop::Diagram& d, const titop::Scene& scene,
                              const titop::Options& options = {}) {
   titop::ReducedSystem s = titop::compile(d, scene, options);
-  write(d, s.state_space());
+  const titop::StateSpace m = s.state_space();
+  write(d, {m.A, m.B, m.C, m.D});
   return s;
+}
+
+/// Its two scenes.
+titop::InterfaceBracket interface_bracket(
+    const std::function<titop::Diagram(titop::Lumping)>& scene,
+    const titop::BracketOptions& options = {}) {
+  for (const auto lumping : {titop::Lumping::constrained, titop::Lumping::released})
+    reference::compile(scene(lumping));
+  return titop::interface_bracket(scene, options);
 }
 
 }  // namespace reference
 
 // Headers that the examples include stand above; with their guards they are empty below.
 #define compile ::reference::compile
+#define interface_bracket ::reference::interface_bracket
 #define main program
 namespace e01 {
 #include "01_spring_mass.cpp"
@@ -120,6 +153,11 @@ namespace e18 {
 namespace e19 {
 #include "19_lft.cpp"
 }
+#ifdef TITOP_NLOPT
+namespace e20 {
+#include "20_codesign.cpp"
+}
+#endif
 namespace e21 {
 #include "21_worst_case.cpp"
 }
@@ -141,6 +179,15 @@ namespace e26 {
 namespace e27 {
 #include "27_margins.cpp"
 }
+namespace e28 {
+#include "28_solar_array.cpp"
+}
+namespace e29 {
+#include "29_exact_beam.cpp"
+}
+namespace demo {
+#include "demo.cpp"
+}
 #undef main
 
 int main(int, char** arguments) {
@@ -161,13 +208,19 @@ int main(int, char** arguments) {
                                          {"17_report", &e17::program, 1},
                                          {"18_attitude_loop", &e18::program, 1},
                                          {"19_lft", &e19::program, 1},
+#ifdef TITOP_NLOPT
+                                         {"20_codesign", &e20::program, 3},
+#endif
                                          {"21_worst_case", &e21::program, 1},
                                          {"22_wheels", &e22::program, 7},
                                          {"23_damping", &e23::program, 3},
                                          {"24_cmg", &e24::program, 1},
                                          {"25_solar_array_drive", &e25::program, 1},
                                          {"26_sloshing", &e26::program, 2},
-                                         {"27_margins", &e27::program, 1}}) {
+                                         {"27_margins", &e27::program, 1},
+                                         {"28_solar_array", &e28::program, 2},
+                                         {"29_exact_beam", &e29::program, 7},
+                                         {"demo", &demo::program, 2}}) {
     reference::folder = all / name;
     reference::seen.clear();
     std::filesystem::create_directories(reference::folder);
