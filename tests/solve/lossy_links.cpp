@@ -33,6 +33,22 @@ TEST_CASE("lossy links: hinged chains and chains on bushings, rigid and flexible
           check({.n = n, .joint = joint, .modes = modes, .damping = damping});
 }
 
+TEST_CASE("lossy links: beams clamped on each other, in a row and as a ladder, of 3 to 80") {
+  for (const double damping : {0.0, 0.3, 0.9}) {
+    for (const int n : {3, 80})
+      check({.n = n, .joint = LossyLinks::Joint::clamp, .damping = damping});
+    check({.n = 10, .rails = 2, .joint = LossyLinks::Joint::clamp, .damping = damping});
+  }
+}
+
+TEST_CASE("lossy links: held or free base, with a force or a prescribed motion at the tip") {
+  for (const auto joint : {LossyLinks::Joint::bushing, LossyLinks::Joint::clamp})
+    for (const auto base : {LossyLinks::Base::held, LossyLinks::Base::free})
+      for (const auto tip : {LossyLinks::Tip::force, LossyLinks::Tip::motion})
+        for (const double damping : {0.3, joint == LossyLinks::Joint::clamp ? 0.9 : 1e3})
+          check({.n = 40, .joint = joint, .damping = damping, .base = base, .tip = tip});
+}
+
 TEST_CASE("lossy links: ladders and grids") {
   for (const int rails : {2, 3})
     for (const double damping : {0.0, 1.0, 30.0})

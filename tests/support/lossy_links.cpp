@@ -38,7 +38,30 @@ struct Link {
   Eigen::VectorXd omega, xi;
   MatrixXd L_P, Phi;
 
-  explicit Link(int modes) : omega(modes), xi(modes), L_P(modes, 6), Phi(6, modes) {
+  explicit Link(const LossyLinks& of) {
+    if (of.joint == LossyLinks::Joint::clamp)
+      set_beam(of.damping);
+    else
+      set_body(of.modes);
+  }
+  ModalData data() const {
+    return {.omega = omega, .xi = xi, .L_P = L_P, .D_P = D_P, .children = {{"C", PC, Phi}}};
+  }
+
+ private:
+  /// Its first clamped mode is at 4 rad/s.
+  void set_beam(double damping) {
+    const ModalData beam = modal_data(Beam{.length = 0.5,
+                                           .section = rectangle(0.03, 0.02),
+                                           .material = {.E = 7e6, .nu = 0.33, .rho = 2700},
+                                           .elements = 2,
+                                           .modes = {.xi = {damping}}});
+    PC = beam.children.front().PC;
+    Phi = beam.children.front().Phi_C;
+    omega = beam.omega, xi = beam.xi, L_P = beam.L_P, D_P = beam.D_P;
+  }
+  void set_body(int modes) {
+    omega.resize(modes), xi.resize(modes), L_P.resize(modes, 6), Phi.resize(6, modes);
     Matrix66 tau = Matrix66::Identity();
     tau.topRightCorner<3, 3>() = -cross(PA);
     D_P.topLeftCorner<3, 3>() = kMass * Matrix3d::Identity();
@@ -109,10 +132,10 @@ Step step_of(const LossyLinks& of, const Link& link, const Big& s) {
   W.leftCols(6) = big(tau);
   if (m > 0) W.rightCols(m) = big(link.Phi);
   const Big c = Big(1) + Big(loss(of.damping)) * s;
-  BigMatrix joint;
+  BigMatrix joint = BigMatrix::Zero(6, 6);
   if (of.joint == LossyLinks::Joint::bushing) {
     joint = solved(big(stiffness()) * c, big(MatrixXd(MatrixXd::Identity(6, 6))));
-  } else {
+  } else if (of.joint == LossyLinks::Joint::hinge) {
     Eigen::Matrix<double, 6, 1> h = Eigen::Matrix<double, 6, 1>::Zero();
     h.tail<3>() = link.axis;
     joint = big(MatrixXd(h * h.transpose())) * (Big(1) / (Big(stiffness()(3, 3)) * c));
@@ -134,70 +157,91 @@ Step step_of(const LossyLinks& of, const Link& link, const Big& s) {
 
 }  // namespace
 
-MatrixXcd LossyLinks::exact(std::complex<double> at) const {
-  const Big s = big(at);
-  const Step step = step_of(*this, Link(modes), s);
-  const Index ports = 6 * rails, coordinates = step.Z.rows();
+namespace {
+
+/// Displacements by a unit wrench at the tip (6 x 6): of the tip, of x_C of the first link.
+struct Compliances {
+  BigMatrix tip, first;
+};
+
+Compliances compliances(const LossyLinks& of, const Step& step) {
+  const Index ports = 6 * of.rails;
+  const auto free = [&](const BigMatrix& at, const BigMatrix& by) {
+    return BigMatrix(at * solved(step.Z, by.transpose()));
+  };
+  const BigMatrix PP = free(step.E, step.E), PC = free(step.E, step.W), CP = PC.transpose(),
+                  CC = free(step.W, step.W);
   BigMatrix below = BigMatrix::Zero(ports, ports), first;  // x_C over a wrench at C, of the ground
   std::vector<BigMatrix> passed;                           // -f_P over a wrench at C
-  for (int i = 0; i < n; ++i) {
-    const BigMatrix Y = below + step.joint;  // x_P = -Y f_P
-    BigMatrix A(coordinates + ports, coordinates + ports), B(coordinates + ports, ports);
-    A << step.Z, -step.E.transpose(), step.E, Y;
-    B << step.W.transpose(), BigMatrix::Zero(ports, ports);
-    const BigMatrix X = solved(A, B);
-    below = step.W * X.topRows(coordinates);
+  for (int i = 0; i < of.n; ++i) {
+    if (i == 0 && of.base == LossyLinks::Base::free) {
+      passed.push_back(BigMatrix::Zero(ports, ports));
+      below = CC;
+    } else {
+      passed.push_back(solved(PP + below + step.joint, PC));  // x_P = -(below + joint) f_P
+      below = CC - CP * passed.back();
+    }
     if (i == 0) first = below;
-    passed.push_back(-X.bottomRows(ports));
   }
   BigMatrix at_first = BigMatrix::Zero(ports, 6);
   at_first.topRows(6) = big(MatrixXd(MatrixXd::Identity(6, 6)));
   for (std::size_t i = passed.size(); i-- > 1;) at_first = (passed[i] * at_first).eval();
-  const BigMatrix tip = below.topLeftCorner(6, 6) * (s * s),
-                  base = (first * at_first).topRows(6) * (s * s);
+  return {below.topLeftCorner(6, 6), (first * at_first).topRows(6)};
+}
+
+}  // namespace
+
+MatrixXcd LossyLinks::exact(std::complex<double> at) const {
+  const Big s = big(at);
+  const auto [tip_by_force, base_by_force] = compliances(*this, step_of(*this, Link(*this), s));
+  BigMatrix base_out = base_by_force * (s * s), tip_out = tip_by_force * (s * s);
+  if (tip == Tip::motion) {
+    const BigMatrix force = solved(tip_out, big(MatrixXd(MatrixXd::Identity(6, 6))));
+    base_out = (base_out * force).eval(), tip_out = force;
+  }
   MatrixXcd result(12, 6);
   for (Index i = 0; i < 12; ++i)
     for (Index j = 0; j < 6; ++j) {
-      const Big& z = i < 6 ? base(i, j) : tip(i - 6, j);
+      const Big& z = i < 6 ? base_out(i, j) : tip_out(i - 6, j);
       result(i, j) = {static_cast<double>(z.real()), static_cast<double>(z.imag())};
     }
   return result;
 }
 
 Diagram LossyLinks::diagram() const {
-  const Link link(modes);
+  const Link link(*this);
   const double c = loss(damping);
   const Bushing six{.stiffness = SixAxes(stiffness()),
                     .damping = SixAxes(Matrix66(c * stiffness()))};
-  const FlexibleBody body = modes == 0
-                                ? FlexibleBody(RigidBody{.mass = kMass,
-                                                         .inertia = link.inertia,
-                                                         .PA = link.PA,
-                                                         .children = {{"C", link.PC}}})
-                                : FlexibleBody(ModalData{.omega = link.omega,
-                                                         .xi = link.xi,
-                                                         .L_P = link.L_P,
-                                                         .D_P = link.D_P,
-                                                         .children = {{"C", link.PC, link.Phi}}});
+  const bool rigid = modes == 0 && joint != Joint::clamp;
+  const FlexibleBody body = rigid ? FlexibleBody(RigidBody{.mass = kMass,
+                                                           .inertia = link.inertia,
+                                                           .PA = link.PA,
+                                                           .children = {{"C", link.PC}}})
+                                  : FlexibleBody(link.data());
   Diagram d{"links"};
   std::vector<FlexibleBody::Handle> last;
-  const auto F = d.input("F", 6);
+  const auto u = d.input("u", 6);
   for (int i = 0; i < n; ++i)
     for (int r = 0; r < rails; ++r) {
       const std::string name = fmt::format("{:03}{}", i, "abc"[r]);
       const auto next = d.add("b" + name, body);
-      const auto on_joint = [&](const auto& j) {
+      const auto hang = [&](const auto& part) {
         if (i == 0)
-          ground(j);
+          ground(part);
         else
-          mount(j, last[static_cast<std::size_t>(r)].child("C"));
-        mount(next, j.child);
+          mount(part, last[static_cast<std::size_t>(r)].child("C"));
       };
-      if (joint == Joint::bushing) {
-        on_joint(d.add("j" + name, six));
+      if (i == 0 && base == Base::free) {
+        release(next);
+      } else if (joint == Joint::clamp) {
+        hang(next);
+      } else if (joint == Joint::bushing) {
+        const auto j = d.add("j" + name, six);
+        hang(j), mount(next, j.child);
       } else {
         const auto h = d.add("j" + name, Hinge{link.axis});
-        on_joint(h);
+        hang(h), mount(next, h.child);
         h.torque = stiffness()(3, 3) * h.angle + c * stiffness()(3, 3) * h.rate;
       }
       if (r > 0)
@@ -209,8 +253,11 @@ Diagram LossyLinks::diagram() const {
         last[static_cast<std::size_t>(r)] = next;
       if (i == 0 && r == 0) d.output("base", 6) = next.child("C").accel;
     }
-  last[0].child("C").force += F;
-  d.output("tip", 6) = last[0].child("C").accel;
+  const auto end = last[0].child("C");
+  if (tip == Tip::force)
+    end.force += u, d.output("tip", 6) = end.accel;
+  else
+    end.accel = u, d.output("tip", 6) = end.force;
   return d;
 }
 
