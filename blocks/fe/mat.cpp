@@ -220,7 +220,8 @@ class MatReader {
     if (count(first_part) != cols + 1) broken("indices");
     const VectorXd first = numbers(first_part, cols + 1);
     const Index there = std::min({count(row_part), count(entry_part), rows * cols});
-    if (first(0) != 0 || !(first(cols) <= static_cast<double>(there))) broken("indices");
+    if (first(0) != 0 || !(first(cols) >= 0 && first(cols) <= static_cast<double>(there)))
+      broken("indices");
     const auto n = static_cast<Index>(first(cols));
     const VectorXd row = numbers(row_part, n), entry = numbers(entry_part, n);
     MatrixXd result = MatrixXd::Zero(rows, cols);

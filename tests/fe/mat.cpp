@@ -222,8 +222,8 @@ TEST_CASE("sparse matrices with indices that are none") {
   // Behind flags, dimensions and name: rows 0 0 1 1 of 4 entries, columns 0 1 2 4.
   const std::size_t rows = 128 + 8 + 16 + 16 + 8 + 8, columns = rows + 16 + 8;
   const std::vector<std::pair<std::size_t, char>> damage = {
-      {rows, '\2'},        {rows + 3, '\xff'},   {rows + 8, '\1'},    {columns, '\1'},
-      {columns + 4, '\5'}, {columns + 12, '\5'}, {columns + 12, '\0'}};
+      {rows, '\2'},        {rows + 3, '\xff'},   {rows + 8, '\1'},     {columns, '\1'},
+      {columns + 4, '\5'}, {columns + 12, '\5'}, {columns + 12, '\0'}, {columns + 15, '\xff'}};
   for (const auto& [at, value] : damage) {
     CAPTURE(at);
     std::string bytes = w.bytes;
