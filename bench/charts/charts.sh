@@ -232,6 +232,19 @@ draw_derivatives() {
   keyed "$name" "derivative of a transfer by the tilt of two wings" "step [rad]" "relative error"
 }
 
+# Finite models of distributed bodies: error over states, and brackets over shapes.
+draw_distributed() {
+  local chart=$1 name=$2 title=$3 xlabel=$4 ylabel=$5 options=${6:-} series
+  [[ -s $out/distributed.csv ]] || return 0
+  rm -f "$work/$name.dat"
+  awk -F, -v c="$chart" '$1 == c && !seen[$2]++ { print $2 }' "$out/distributed.csv" |
+    while read -r series; do
+      awk -F, -v c="$chart" -v s="$series" '$1 == c && $2 == s { print $3 "," $4 }' \
+        "$out/distributed.csv" | block "$name" "$series"
+    done
+  chart "$name" "$title" "$xlabel" "$ylabel" "$options"
+}
+
 draw_all() {
   local scene n
   for scene in D F K A BL C; do
@@ -259,6 +272,10 @@ draw_all() {
     "gap over the largest stretch"
   draw_growth_factors
   draw_derivatives
+  draw_distributed arm distributed-arm "two links on a hub, 0 to 50 Hz" "states" \
+    "error against the distributed beams" "linear=1;"
+  draw_distributed plates distributed-plates "two halves of a plate, welded along the cut" \
+    "polynomials of displacement and slope each" "width of the bracket over the frequency" "linear=1;"
   draw_integration A 10
   draw_integration D 5
   [[ $mode == quick ]] || draw_integration D 50
