@@ -64,7 +64,7 @@ class Elements {
   WordLayout layout_;
 };
 
-/// What the elements before its data say of a variable.
+/// Elements of a variable before its data.
 struct Head {
   std::uint32_t kind = 0;
   bool complex = false;
