@@ -48,7 +48,7 @@ Diagram arm(Link upper_link, Link lower_link) {
   mount(upper, hub.child("arm"));
   const Vector3d z(0, 0, 1);
   auto elbow = hinge(d, "elbow", lower, upper.child("C"), Rotation::about(z, 0.7), z);
-  elbow.torque = -900 * elbow.angle - 4 * elbow.rate;
+  elbow.torque = 900 * elbow.angle + 4 * elbow.rate;
   mount(hand, lower.child("C"));
   d.output("hub", 6) = hub.parent.accel;
   d.output("hand", 6) = hand.parent.accel;

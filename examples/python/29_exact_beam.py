@@ -21,7 +21,7 @@ def arm(upper_link, lower_link):
     hub.parent.force = -d.input("F", 6)  # [N; N m]
     titop.mount(upper, hub.child["arm"])
     elbow = titop.hinge(d, "elbow", lower, upper.child["C"], titop.Rotation.about(z, 0.7), z)
-    elbow.torque = -900 * elbow.angle - 4 * elbow.rate
+    elbow.torque = 900 * elbow.angle + 4 * elbow.rate
     titop.mount(hand, lower.child["C"])
     d.output["hub"] = hub.parent.accel
     d.output["hand"] = hand.parent.accel

@@ -39,7 +39,7 @@ Diagram arm(Add add) {
   hub.parent.force = -d.input("F", 6);
   mount(upper, hub.child("arm"));
   auto elbow = hinge(d, "elbow", lower, upper.child("C"), Rotation::about(kZ, 0.7), kZ);
-  elbow.torque = -900 * elbow.angle - 4 * elbow.rate + d.input("T");
+  elbow.torque = 900 * elbow.angle + 4 * elbow.rate + d.input("T");
   auto hand = d.add("hand", RigidBody{.mass = 3, .inertia = 0.02 * Matrix3d::Identity()});
   mount(hand, lower.child("C"));
   d.output("hub", 6) = hub.parent.accel;
