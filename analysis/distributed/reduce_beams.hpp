@@ -32,7 +32,7 @@ struct ReducedBeams {
 /// up to twice that end; both are multiplied by 1.5 until `compare` finds no more than that
 /// quarter. The scene is then reduced as by compile(diagram, scene), and compared again: first to
 /// the whole accuracy, then, if both errors add, to less. The order is within 1.3, or one mode, of
-/// the least that a search finds in 19 of 20 random scenes (tests/long/distributed.cpp).
+/// the least that a search finds in 109 of 112 random scenes (tests/long/distributed.cpp).
 ///
 /// Throws the errors of compile(diagram, scene) and `compare`; bad_value if the accuracy is not
 /// reached with 200 elements a beam, with the error that is. Beams without a counterpart here are

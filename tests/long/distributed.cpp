@@ -6,9 +6,9 @@
 using namespace titop_test;
 
 TEST_CASE(
-    "300 random scenes of distributed beams: error below the accuracy, order near the least") {
+    "100 random scenes of distributed beams: error below the accuracy, order near the least") {
   int near = 0;
-  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     const RandomBeams scene(seed);
     const OrderBesideLeast r = order_beside_least(scene);
     INFO(seed << '\n' << to_string(r.reduced) << "least order found: " << r.least);
@@ -18,5 +18,5 @@ TEST_CASE(
     CHECK(r.reduced.system.order() <= 2 * r.least + 2);
     near += within(r.reduced.system.order(), r.least);
   }
-  CHECK(near >= 0.95 * 300);  // in the others a vector that came early is spared by later ones
+  CHECK(near >= 95);  // in the others a vector that came early is spared by later ones
 }
