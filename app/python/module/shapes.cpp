@@ -11,7 +11,7 @@ void bind_mode_shapes(py::module_& m) {
   py::class_<ModeShape>(m, "ModeShape",
                         "Motion of all points in one mode: the real part of motion exp(s t), in "
                         "the frame of the first point of each assembly; a column per point.")
-      .def_readonly("place", &ModeShape::place, "Of its pole in system.poles().")
+      .def_readonly("index", &ModeShape::index, "Of its pole in system.poles().")
       .def_readonly("pole", &ModeShape::pole)
       .def_readonly("translation", &ModeShape::translation,
                     "3 x points, complex [m]; the largest is 1 m.")
@@ -27,7 +27,7 @@ void bind_mode_shapes(py::module_& m) {
       "mode_shapes",
       [](const System& s, const std::vector<int>& poles) { return mode_shapes(s, poles); },
       "system"_a, "poles"_a, Unlocked(),
-      "Shapes of modes, given by the places of their poles in system.poles(): the motion that the "
+      "Shapes of modes, given by the indices of their poles in system.poles(): the motion that the "
       "inputs excite.");
 }
 
