@@ -181,7 +181,7 @@ class Artist {
       const auto k = static_cast<std::size_t>(i);
       c.A[k][k] = -decay;
       c.B[k][0] = dice_.fraction();
-      c.C[0].push_back(dice_.fraction() * Ratio(acceleration ? 1 : 64, acceleration ? 8 : 8));
+      c.C[0].push_back(dice_.fraction() * Ratio(acceleration ? 1 : 64, 8));
     }
     if (n == 2) c.A[0][1] = dice_.fraction(), c.A[1][0] = -c.A[0][1];
     c.D = {{acceleration ? dice_.octaves(-3, 1) : dice_.octaves(0, 4)}};
