@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/similarity_scaling.hpp>
 #include <vector>
 
 namespace titop::linalg {
@@ -14,16 +15,20 @@ struct Ordered {
   std::vector<Eigen::Index> order;
 };
 
-/// Eigen's iteration can cycle on defective matrices whose shifts and rotations repeat (two equal 2
-/// x 2 systems in series), since it tries other shifts after 10 and 30 steps only. Rows and columns
-/// in another order, which causes no rounding, avoid that: as they are, backwards, and each rotated
-/// by one, n + 1 orders at most. `solver.info()` tells if none has converged. O(25 n^3) for each
-/// order.
+/// In the order of A's parts (linalg/similarity_scaling.hpp) A is block upper triangular, and
+/// reduction to Hessenberg form and iteration keep each zero below its blocks: the eigenvalues of a
+/// part have no rounding of the other parts or of the entries between them, of any size (LAPACK's
+/// gebal permutes likewise).
+///
+/// Eigen's iteration can cycle on defective matrices whose shifts and rotations repeat, since it
+/// tries other shifts after 10 and 30 steps only. Rows and columns in another order, which causes
+/// no rounding, avoid that: by parts, backwards, and each rotated by one, n + 1 orders at most.
+/// `solver.info()` tells if none has converged. O(25 n^3) for each order.
 template <class Solver>
 Ordered<Solver> converged(const Eigen::MatrixXd& A, bool vectors) {
-  std::vector<Eigen::Index> order(static_cast<std::size_t>(A.rows()));
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<Eigen::Index>(i);
-  Solver solver(A, vectors);
+  std::vector<Eigen::Index> order;
+  for (const std::vector<int>& part : parts(A)) order.insert(order.end(), part.begin(), part.end());
+  Solver solver(Eigen::MatrixXd(A(order, order)), vectors);
   for (std::size_t k = 0; k < order.size() && solver.info() == Eigen::NoConvergence; ++k) {
     if (k == 0)
       std::reverse(order.begin(), order.end());

@@ -4,6 +4,7 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 #include <limits>
+#include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/schur.hpp>
 #include <vector>
@@ -19,6 +20,7 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXcd;
+using Eigen::VectorXd;
 using titop_test::Rng;
 using Complex = std::complex<double>;
 
@@ -89,6 +91,38 @@ TEST_CASE("Schur form and exchange of eigenvalues: backward stable at orders 0 t
       // The sum of the marked eigenvalues is insensitive where single ones are not.
       const double off = std::abs(s.T.diagonal().head(count).sum() - marked);
       CHECK(off <= 100 * static_cast<double>(n) * kUnit * A.norm());
+    }
+}
+
+TEST_CASE("parts coupled in one direction: eigenvalues without rounding of the couplings") {
+  Rng rng(35);
+  for (Index n = 0; n <= 12; ++n)
+    for (int trial = 0; trial < 20; ++trial) {
+      CAPTURE(n);
+      // A triangle in any order of its rows: eigenvalues and couplings of any size.
+      MatrixXd A = MatrixXd::Zero(n, n);
+      std::vector<Index> order(static_cast<std::size_t>(n));
+      for (Index i = 0; i < n; ++i) {
+        order[static_cast<std::size_t>(i)] = i;
+        A(i, i) = -std::pow(10.0, rng.between(-12, 3));
+        for (Index j = 0; j < i; ++j)
+          if (rng.chance(0.7)) A(i, j) = std::pow(10.0, rng.between(-3, 12));
+      }
+      for (Index i = 1; i < n; ++i)
+        std::swap(order[static_cast<std::size_t>(i)],
+                  order[static_cast<std::size_t>(rng.below(static_cast<int>(i) + 1))]);
+      const MatrixXd mixed = A(order, order);
+      VectorXd expected = A.diagonal();
+      std::sort(expected.begin(), expected.end());
+      const auto check = [&](const VectorXcd& values) {
+        VectorXd found = values.real();
+        std::sort(found.begin(), found.end());
+        // The iteration scales by the largest entry, which rounds once each way.
+        CHECK(((found - expected).array().abs() <= 4 * kUnit * expected.array().abs()).all());
+        CHECK(values.imag().isZero(0));
+      };
+      check(linalg::schur(mixed).T.diagonal());
+      check(linalg::eigensystem(mixed).values);
     }
 }
 
