@@ -6,6 +6,7 @@
 #include <titop/compiler/minreal/staircase.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/similarity_scaling.hpp>
 
 namespace titop::minreal {
 namespace {
@@ -24,23 +25,20 @@ constexpr double kLater = 1e-3;
 constexpr double kOfNoise = 1e12;  ///< times rounding: its weight in the scaling of rows
 
 /// Factors that bring the largest entries of all rows and columns to 1 [Ruiz 2001]; rows and
-/// columns of zeros keep theirs. Which factors these are depends on where the sweeps begin: in the
-/// units of the states, and with columns of ports of size 1, so that they are the same in any
-/// units.
+/// columns of zeros keep theirs. Which factors these are depends on where the sweeps begin: at the
+/// scaling that brings all clear entries nearest to 1, which is the same in any units. (From the
+/// units of the states, couplings to a slow part would hide its own entries.)
 struct UnitScale {
   VectorXd row, column;
-  /// `states`: units of the rows, and of as many columns.
-  UnitScale(MatrixXd sizes, const VectorXd& states)
-      : row(states.cwiseInverse()), column(VectorXd::Ones(sizes.cols())) {
+  UnitScale(const MatrixXd& clear, MatrixXd sizes) {
+    linalg::TwoSidedScaling start = linalg::two_sided_scaling(clear);
+    row = std::move(start.row);
+    column = std::move(start.column);
     constexpr int kSweeps = 20;
     const auto unit = [](const VectorXd& size) {
       return VectorXd((size.array() > 0).select(size.cwiseSqrt().cwiseInverse(), 1.0));
     };
-    sizes = (row.asDiagonal() * sizes).eval();
-    column.head(states.size()) = states;
-    for (Index j = states.size(); j < sizes.cols(); ++j)
-      if (const double size = sizes.col(j).maxCoeff(); size > 0) column(j) = 1 / size;
-    sizes = (sizes * column.asDiagonal()).eval();
+    sizes = (row.asDiagonal() * sizes * column.asDiagonal()).eval();
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
       const VectorXd r = unit(sizes.rowwise().maxCoeff()), c = unit(sizes.colwise().maxCoeff());
       sizes = (r.asDiagonal() * sizes * c.asDiagonal()).eval();
@@ -158,7 +156,7 @@ IndependentRows independent_rows(const MatrixXd& M, const MatrixXd& rounding, co
       (M.array().abs() > detail::kRoundingFactor * rounding.array()).select(M, 0.0);
   // A column that distinguishes some rows may be at rounding level in the others, and large: it
   // must not dominate these.
-  const UnitScale by(clear.cwiseAbs().cwiseMax(kOfNoise * rounding), unit);
+  const UnitScale by(clear, clear.cwiseAbs().cwiseMax(kOfNoise * rounding));
   const MatrixXd scaled = by(clear);
   VectorXd weight(M.rows());
   std::vector<int> open;

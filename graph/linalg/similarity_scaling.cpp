@@ -92,7 +92,8 @@ VectorXd within(const MatrixXd& part) {
   return other.cwiseAbs().sum() <= kAsGood * one.cwiseAbs().sum() ? d_other : d_one;
 }
 
-/// Makes the largest entry between two parts as large as the largest within one.
+/// Makes the largest entry between two parts as large as the largest within either; within parts
+/// that are 0, as the largest of all.
 void fit_between(MatrixXd& A, VectorXd& d, const std::vector<std::vector<int>>& parts) {
   const int count = static_cast<int>(parts.size());
   std::vector<int> part(at(A.rows()));
@@ -104,14 +105,18 @@ void fit_between(MatrixXd& A, VectorXd& d, const std::vector<std::vector<int>>& 
       double& most = largest(part[at(i)], part[at(j)]);
       most = std::max(most, std::abs(A(i, j)));
     }
-  const double within = largest.diagonal().maxCoeff();
+  const double most = largest.diagonal().maxCoeff();
+  const auto size = [&](int i, int j) {
+    const double within = std::max(largest(i, i), largest(j, j));
+    return within > 0 ? within : most > 0 ? most : 1;
+  };
   std::vector<LogRatio> ratios;
   for (int i = 0; i < count; ++i)
     for (int j = 0; j < count; ++j)
       if (i != j && largest(i, j) > 0)
-        ratios.push_back({i, j, std::log2(largest(i, j) / (within > 0 ? within : 1))});
+        ratios.push_back({i, j, std::log2(largest(i, j) / size(i, j))});
   if (ratios.empty()) return;
-  const VectorXd t = fit(ratios, count, /*level=*/within == 0);
+  const VectorXd t = fit(ratios, count, /*level=*/most == 0);
   for (int i = 0; i < A.rows(); ++i) scale(A, d, i, power_of_two(t(part[at(i)])));
 }
 
@@ -145,6 +150,20 @@ VectorXd similarity_scaling_of_parts(MatrixXd& A) {
   }
   if (sets.size() > 1) fit_between(A, d, sets);
   return d;
+}
+
+TwoSidedScaling two_sided_scaling(const MatrixXd& M) {
+  const int rows = static_cast<int>(M.rows()), columns = static_cast<int>(M.cols());
+  std::vector<LogRatio> ratios;
+  for (int j = 0; j < columns; ++j)
+    for (int i = 0; i < rows; ++i)
+      if (M(i, j) != 0) ratios.push_back({i, rows + j, std::log2(std::abs(M(i, j)))});
+  TwoSidedScaling result{VectorXd::Ones(rows), VectorXd::Ones(columns)};
+  if (ratios.empty()) return result;
+  const VectorXd t = fit(ratios, rows + columns, /*level=*/false);
+  for (int i = 0; i < rows; ++i) result.row(i) = power_of_two(-t(i));
+  for (int j = 0; j < columns; ++j) result.column(j) = power_of_two(t(rows + j));
+  return result;
 }
 
 std::vector<std::vector<int>> parts(const MatrixXd& A) {

@@ -14,8 +14,17 @@ Eigen::VectorXd similarity_scaling(Eigen::MatrixXd& A);
 /// that all act on one another: by the sweeps of `similarity_scaling`, which end early if units are
 /// far apart, after a fit of logarithms [Curtis, Reid 1972]. Parts coupled in one direction only,
 /// for which sweeps do not converge, are scaled so that the coupling entries are about as large as
-/// the largest within a part: needed for vectors, not for eigenvalues. O(n^3 / 3).
+/// the largest within either part: needed for vectors, not for eigenvalues. O(n^3 / 3).
 Eigen::VectorXd similarity_scaling_of_parts(Eigen::MatrixXd& A);
+
+/// Powers of two that bring all entries of M (m x n) other than 0 as near to 1 as rows and columns
+/// can, by least squares of logarithms [Curtis, Reid 1972]: the scaled matrix is the same in all
+/// units of rows and columns, up to factors of about 2. Rows and columns of zeros keep their size.
+/// O((m + n)^3 / 3).
+struct TwoSidedScaling {
+  Eigen::VectorXd row, column;  ///< diag(row) M diag(column) is the scaled matrix
+};
+TwoSidedScaling two_sided_scaling(const Eigen::MatrixXd& M);
 
 /// Sets of states that all act on one another, directly or through others (the strong components of
 /// A's pattern of entries other than 0): the eigenvalues of A are those of its parts. A part acts

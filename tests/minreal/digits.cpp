@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <titop/titop.hpp>
 #include <utility>
@@ -133,7 +134,7 @@ TEST_CASE("slow integrators in series keep their digits above and at their rates
 
 namespace {
 
-/// Lags and oscillators in a row, with poles from 1e-9 to 1e3 rad/s in any order, and two equal
+/// Lags and oscillators in a row, with poles from 1e-12 to 1e3 rad/s in any order, and two equal
 /// lags beside them of which only the difference is seen. Outputs: that, and the end of the row.
 struct RandomSeries {
   explicit RandomSeries(std::uint64_t seed) : rng(seed) {
@@ -152,6 +153,12 @@ struct RandomSeries {
       G *= xi < 0 ? w / (s + w) : w * w / (s * (s + 2 * xi * w) + w * w);
     return G;
   }
+  std::vector<double> frequencies() const {  // rad/s, of each pole or pair
+    std::vector<double> result{unseen, unseen};
+    for (const auto& [w, xi] : parts) result.push_back(w);
+    std::sort(result.begin(), result.end());
+    return result;
+  }
   double fastest() const {  // rad/s
     double most = 0;
     for (const auto& [w, xi] : parts) most = std::max(most, w);
@@ -161,11 +168,12 @@ struct RandomSeries {
   titop_test::Rng rng;
   Diagram d{"series"};
   std::vector<std::pair<double, double>> parts;  ///< rad/s and damping ratio, or -1 for a lag
+  double unseen = 0;                             ///< rad/s, of the two equal lags
 
  private:
   template <class Signal>
   Lti::Handle add(const Signal& from) {
-    const double w = std::pow(10, rng.between(-9, 3)), xi = rng.chance(0.3) ? 0.3 : -1;
+    const double w = std::pow(10, rng.between(-12, 3)), xi = rng.chance(0.3) ? 0.3 : -1;
     parts.emplace_back(w, xi);
     return add(from, w, xi);
   }
@@ -182,8 +190,8 @@ struct RandomSeries {
   }
   template <class Signal>
   void add_unseen(const Signal& from) {
-    const double w = std::pow(10, rng.between(-9, 3));
-    const auto one = add(from, w, -1), other = add(from, w, -1);
+    unseen = std::pow(10, rng.between(-12, 3));
+    const auto one = add(from, unseen, -1), other = add(from, unseen, -1);
     d.output("none") = one.out - other.out;
   }
   int count_ = 0;
@@ -201,7 +209,7 @@ TEST_CASE("minimal models of 100 series are as accurate as before, to a decade a
     system.write(written);
     const StateSpace& model = system.state_space();
     smaller += model.order() < written.order();
-    for (int decade = -9; decade <= 3; ++decade) {
+    for (int decade = -12; decade <= 3; ++decade) {
       const std::complex<double> s(0, 3.7 * std::pow(10, decade)), exact = series.exact(s);
       if (s.imag() > 10 * series.fastest()) continue;
       CAPTURE(decade);
@@ -212,6 +220,20 @@ TEST_CASE("minimal models of 100 series are as accurate as before, to a decade a
     }
   }
   CHECK(smaller >= 90);
+}
+
+TEST_CASE("poles of 100 series are those of their parts") {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    CAPTURE(seed);
+    const RandomSeries series(seed);
+    StateSpace written;
+    compile(series.d).write(written);
+    const std::vector<double> expected = series.frequencies();
+    const std::vector<Pole> found = poles(written);
+    REQUIRE(found.size() == expected.size());
+    for (std::size_t k = 0; k < found.size(); ++k)
+      CHECK(std::abs(found[k].omega - expected[k]) <= 1e-13 * expected[k]);
+  }
 }
 
 TEST_CASE("states leave where that costs no digits") {
