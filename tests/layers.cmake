@@ -76,13 +76,13 @@ function(internal header)
   set(headers ${headers} ${header} PARENT_SCOPE)
   set("users ${header}" ${ARGN} PARENT_SCOPE)
 endfunction()
-# analysis/certify/certify_full.cpp reads the data of a System, as its friend.
+# analysis/certify/certify_full.cpp reads the rounding of entries by the factors.
 # analysis/reduction/coordinates.hpp reads bodies' modes and stiffnesses.
 # analysis/reduction/reach_of_data.hpp reads bodies' modes. analysis/simulation/simulate.cpp takes
-# the factors of a System, as its friend. emit/cpp/form.cpp uses transfer_if_any.
+# the factors of a System.
 internal(compiler/system/system_data.hpp analysis/certify/certify_full.cpp
          analysis/reduction/coordinates.hpp analysis/reduction/reach_of_data.hpp
-         analysis/simulation/simulate.cpp emit/cpp/form.cpp)
+         analysis/simulation/simulate.cpp)
 # analysis/reduction/ compiles diagrams that it has rewritten, analysis/lft/ opened ones,
 # analysis/damping/ parts of them, analysis/control/ diagrams cut at loop points,
 # analysis/distributed/ those with finite beams, analysis/shapes/ those with all points as outputs.
@@ -91,7 +91,12 @@ internal(compiler/system/compile_graph.hpp analysis/certify/ analysis/reduction/
 # analysis/certify/ measures differences beside the rounding of the elimination.
 internal(compiler/system/elimination_terms.hpp analysis/certify/)
 # analysis/lft/ takes columns and rows of the transfers of opened systems.
-internal(compiler/system/transfer_part.hpp analysis/lft/)
+# analysis/certify/certify_full.cpp and emit/cpp/form.cpp take the transfers that there are.
+internal(compiler/system/transfer_part.hpp analysis/lft/ analysis/certify/certify_full.cpp
+         emit/cpp/form.cpp)
+# A System is a handle on top of the compiler: its results are functions of SystemData, which do not
+# know it. In compiler/, compiler/system/system.cpp alone includes it.
+set(handle compiler/system/system.hpp)
 
 # The room of a file: that of the longest folder.
 function(room_of file result)
@@ -138,6 +143,10 @@ foreach(file ${files})
     string(REGEX REPLACE "^[^<\"]*[<\"]([^>\"]*).*$" "\\1" header "${line}")
     string(REGEX REPLACE "^titop/" "" header "${header}")
     string(REGEX REPLACE "^generate/" "app/generate/" header "${header}")
+    if(header STREQUAL handle AND file MATCHES "^compiler/"
+       AND NOT file STREQUAL "compiler/system/system.cpp")
+      string(APPEND wrong "\n  ${file} includes ${header}: take SystemData, or less")
+    endif()
     room_of(${header} from)
     list(APPEND "used ${room}" "${from}")
     if(from STREQUAL room OR "${file} ${header}" STREQUAL "app/generate/test_source.cpp titop.hpp")

@@ -16,6 +16,7 @@
 #include <titop/compiler/system/elimination_terms.hpp>
 #include <titop/compiler/system/system.hpp>
 #include <titop/compiler/system/system_data.hpp>
+#include <titop/compiler/system/transfer_part.hpp>
 #include <titop/graph/closed_form.hpp>
 #include <titop/graph/declared.hpp>
 #include <utility>
@@ -75,7 +76,7 @@ std::vector<MatrixXcd> factored_at(const System& system, std::vector<Complex>& p
   std::vector<MatrixXcd> list;
   std::vector<Complex> kept, left_out;
   for (const Complex s : points) {
-    std::optional<MatrixXcd> G = detail::transfer_if_any(system, s);
+    std::optional<MatrixXcd> G = detail::transfer_if_any(detail::data_of(system), s);
     (G ? kept : left_out).push_back(s);
     if (G) list.push_back(std::move(*G));
   }
@@ -105,7 +106,7 @@ void add_poles(const System& system, const std::vector<double>& omegas,
   const std::size_t most = points.size(), step = most > 0 ? (omegas.size() + most - 1) / most : 1;
   for (std::size_t k = 0; most > 0 && k < omegas.size(); k += step) {
     const Complex s(0.05 * omegas[k], omegas[k]);
-    if (std::optional<MatrixXcd> G = detail::transfer_if_any(system, s)) {
+    if (std::optional<MatrixXcd> G = detail::transfer_if_any(detail::data_of(system), s)) {
       points.push_back(s);
       factored.push_back(std::move(*G));
     }
@@ -122,7 +123,8 @@ void check_dense(const System& system, const detail::Rounded& before,
   const std::vector<MatrixXcd> dense = detail::transfers(system.state_space(), points);
   const MatrixXd terms = std::exchange(measure.terms, {});
   detail::add_rounding(measure, factored, detail::of_nothing(terms, factored));
-  detail::Difference found = detail::difference(dense, factored, measure, system, points);
+  detail::Difference found =
+      detail::difference(dense, factored, measure, detail::data_of(system), points);
   if (found.relative > detail::kClose) {
     detail::add_rounding(
         measure, factored,
@@ -146,7 +148,8 @@ void check_written(const System& system, const Full& subject, const std::vector<
   try {
     const std::vector<double> values = values_of(system);
     const std::vector<MatrixXcd> written = as_written(g, values, points);
-    detail::Difference found = detail::difference(written, factored, measure, system, points);
+    detail::Difference found =
+        detail::difference(written, factored, measure, detail::data_of(system), points);
     // At some points one order of sums may hit a 0 and the other not: all of them, if need be.
     for (const auto& at : {detail::some_of(points), points}) {
       if (!(found.relative > detail::kClose)) break;
@@ -170,7 +173,7 @@ void check_pairs(const System& system, const Options& options, std::vector<Compl
   const passes::DualPairs pairs = passes::dual_pairs(g, values);
   if (pairs.count > 0)
     for (const Complex s : certification::around(growing))
-      if (std::optional<MatrixXcd> G = detail::transfer_if_any(system, s)) {
+      if (std::optional<MatrixXcd> G = detail::transfer_if_any(detail::data_of(system), s)) {
         points.push_back(s);
         factored.push_back(std::move(*G));
       }
@@ -287,7 +290,7 @@ FullCertificate certify(const System& system, const Full& subject) {
   if (dense) {
     c.order = system.order_verdict();
     system.write(before.model);
-    before.rounding = detail::rounding_of(*system.data_, before.model);
+    before.rounding = detail::rounding_of(detail::data_of(system), before.model);
     certification::FoundPoles found =
         certification::check_poles(system, before.model, before.rounding.A);
     omegas = std::move(found.omegas);
@@ -320,7 +323,7 @@ FullCertificate certify(const System& system, const Full& subject) {
       check_dense(system, before, of_dense, there, measure, c.grid);
     }
     check_written(system, subject, points, factored, measure, c.grid);
-    check_pairs(system, system.data_->skeleton->options, points, factored, growing, c);
+    check_pairs(system, detail::data_of(system).skeleton->options, points, factored, growing, c);
   } else {
     if (!transfers)
       c.grid.why_not = "without inputs, or without outputs, there is no transfer";

@@ -30,7 +30,7 @@ DualTransfers dual_transfers(const passes::DualPairs& pairs,
 DualTransfers with_rounding(const System& system, const passes::DualPairs& pairs,
                             DualTransfers transfers) {
   // At all points: rounding may show at one of them only.
-  const MatrixXd terms = detail::terms(system, transfers.points);
+  const MatrixXd terms = detail::terms(detail::data_of(system), transfers.points);
   detail::add_rounding(transfers.by, transfers.G, terms(pairs.out, pairs.in));
   return transfers;
 }

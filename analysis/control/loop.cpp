@@ -85,7 +85,7 @@ void apply(Graph& g, const CutSignals& c, Wanted wanted) {
 }
 
 System compiled(const System& system, const std::vector<int>& nodes, Wanted wanted) {
-  return System(detail::compile_rewritten(system, [&](const Stage& stage) {
+  return System(detail::compile_rewritten(detail::data_of(system), [&](const Stage& stage) {
     Stage begin;
     begin.values = stage.values;
     begin.motions = stage.motions;

@@ -4,6 +4,7 @@
 #include <titop/blocks/flexible_body.hpp>
 #include <titop/blocks/specified.hpp>
 #include <titop/compiler/system/compile_graph.hpp>
+#include <titop/compiler/system/system.hpp>
 #include <titop/graph/pole.hpp>
 #include <titop/graph/support/parallel.hpp>
 

@@ -33,7 +33,7 @@ Derivatives derivatives(const System& system, const std::vector<std::string>& pa
     to_open.push_back({.parameter = list.back().index, .differences = true});
   }
   if (!mistakes.empty()) throw Error(std::move(mistakes));
-  Derivatives g{system, detail::compile_opened(system, to_open)};
+  Derivatives g{system, detail::compile_opened(detail::data_of(system), to_open)};
   detail::OpenedMatrices opened = detail::opened_matrices(System(g.opened_), list);
   g.m_ = std::move(opened.m);
   g.in_ = std::move(opened.in), g.out_ = std::move(opened.out);

@@ -145,7 +145,7 @@ Lft lft(const System& system, const ParameterRanges& ranges) {
   std::vector<passes::ToOpen> to_open;
   for (const auto& p : list)
     to_open.push_back({p.index, p.map.kind == ParameterMap::Kind::quarter_angle});
-  Lft f{System(detail::compile_opened(system, to_open))};
+  Lft f{System(detail::compile_opened(detail::data_of(system), to_open))};
   const detail::OpenedMatrices opened = detail::opened_matrices(f.opened_, list);
   for (std::size_t i = 0; i < list.size(); ++i)
     f.deltas_.push_back({.parameter = ranges[i].first,

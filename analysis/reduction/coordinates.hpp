@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <titop/compiler/system/system.hpp>
 #include <titop/compiler/system/system_data.hpp>
 #include <vector>
 

@@ -51,7 +51,7 @@ void add_forces(Graph& g) {
 
 /// The diagram with the accelerations of all points as outputs.
 System with_points(const System& system) {
-  return System(detail::compile_rewritten(system, [](const Stage& stage) {
+  return System(detail::compile_rewritten(detail::data_of(system), [](const Stage& stage) {
     Stage begin;
     begin.values = stage.values;
     begin.motions = stage.motions;

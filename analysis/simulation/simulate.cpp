@@ -326,7 +326,7 @@ Trajectory simulate(const System& system, const Excitation& excitation, const Si
   const VectorXd x0 = start_of(system, s.x0);
   const detail::HeldLaw law(system, excitation, s.step);
   const auto by = [&](Stepper stepper) {
-    const auto motion = motion_of(system, *system.data_, law, s, stepper, steps, x0);
+    const auto motion = motion_of(system, detail::data_of(system), law, s, stepper, steps, x0);
     return move(system, excitation, law, s, stepper, *motion, x0, steps);
   };
   if (s.stepper != Stepper::automatic) return by(s.stepper);

@@ -63,7 +63,7 @@ int main(int argc, char** argv) {
       to_open.push_back({static_cast<int>(found - all.begin())});
     }
     const Derivatives g = derivatives(system, names);
-    const System opened(detail::compile_opened(system, to_open));
+    const System opened(detail::compile_opened(detail::data_of(system), to_open));
     TransferCost cost;
     std::vector<MatrixXcd> slopes;
     MatrixXcd M;

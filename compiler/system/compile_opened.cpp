@@ -63,8 +63,7 @@ void refuse_moving_chains(const Skeleton& k, const std::vector<double>& values,
 }  // namespace
 
 std::shared_ptr<const SystemData> compile_rewritten(
-    const System& system, const std::function<Stage(const Stage&)>& rewrite) {
-  const SystemData& d = *system.data_;
+    const SystemData& d, const std::function<Stage(const Stage&)>& rewrite) {
   const Skeleton& k = *d.skeleton;
   Stage begin;
   begin.source = k.stage.source;
@@ -76,12 +75,11 @@ std::shared_ptr<const SystemData> compile_rewritten(
   return compile_stage(rewrite(begin), options);
 }
 
-std::shared_ptr<const SystemData> compile_opened(const System& system,
+std::shared_ptr<const SystemData> compile_opened(const SystemData& d,
                                                  const std::vector<passes::ToOpen>& parameters) {
-  const SystemData& d = *system.data_;
   refuse_moving_chains(*d.skeleton, d.numbers.parameters, parameters);
   return compile_rewritten(
-      system, [&](const Stage& stage) { return passes::open_parameters(stage, parameters); });
+      d, [&](const Stage& stage) { return passes::open_parameters(stage, parameters); });
 }
 
 }  // namespace titop::detail

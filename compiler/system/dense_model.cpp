@@ -3,7 +3,7 @@
 
 namespace titop::steps {
 
-detail::DenseModel dense(const System&, const detail::SystemData& data, detail::DenseModel m) {
+detail::DenseModel dense(const detail::SystemData& data, detail::DenseModel m) {
   detail::write_dense(data, m.model, 0);
   for (const Eigen::MatrixXd* matrix : {&m.model.A, &m.model.B, &m.model.C, &m.model.D})
     if (!matrix->allFinite()) detail::refuse_overflow("the dense model of " + data.graph().name);

@@ -7,10 +7,6 @@
 #include <utility>
 #include <vector>
 
-namespace titop {
-class System;
-}
-
 namespace titop::detail {
 
 struct SystemData;
@@ -26,6 +22,6 @@ struct DenseModel {
 };
 
 /// All passes on the dense model, in the order of the table in pipeline.cpp.
-DenseModel dense_model(const System& system, const SystemData& data);
+DenseModel dense_model(const SystemData& data);
 
 }  // namespace titop::detail

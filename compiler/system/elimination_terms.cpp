@@ -1,19 +1,19 @@
 #include <titop/compiler/system/elimination_terms.hpp>
+#include <titop/compiler/system/system_data.hpp>
+#include <titop/compiler/system/transfer_part.hpp>
 
 namespace titop::detail {
 namespace {
 
-using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
 }  // namespace
 
-MatrixXd terms(const System& system, const std::vector<std::complex<double>>& points) {
-  MatrixXd result = MatrixXd::Zero(static_cast<Index>(system.outputs().size()),
-                                   static_cast<Index>(system.inputs().size()));
+MatrixXd terms(const SystemData& d, const std::vector<std::complex<double>>& points) {
+  MatrixXd result = MatrixXd::Zero(std::ssize(d.layout().outputs), std::ssize(d.layout().inputs));
   for (const std::complex<double> s : points) try {
-      const MatrixXcd off = system.transfer(s, Precision::standard) - in_long_double(system, s);
+      const MatrixXcd off = transfer_of(d, s, Precision::standard) - in_long_double(d, s);
       result = result.cwiseMax(kTermsPerRounding * off.cwiseAbs());
     } catch (const Error&) {
       // No digit there in one of the two: other points must suffice.
@@ -22,11 +22,11 @@ MatrixXd terms(const System& system, const std::vector<std::complex<double>>& po
 }
 
 Difference difference(const std::vector<MatrixXcd>& a, const std::vector<MatrixXcd>& exact,
-                      Measure& measure, const System& system,
+                      Measure& measure, const SystemData& d,
                       const std::vector<std::complex<double>>& points) {
   const Difference first = difference(a, exact, measure);
   if (first.relative <= kClose) return first;
-  add_rounding(measure, exact, terms(system, some_of(points)));
+  add_rounding(measure, exact, terms(d, some_of(points)));
   return difference(a, exact, measure);
 }
 

@@ -1,15 +1,16 @@
 #pragma once
 
 #include <titop/compiler/definition/compare.hpp>
-#include <titop/compiler/system/system.hpp>
 
 namespace titop::detail {
+
+struct SystemData;
 
 /// Size of the terms that cancel inside the elimination, outputs x inputs: kTermsPerRounding times
 /// the difference between the transfers in double and in long double, the largest at these points.
 /// A point at which one of the two has no digit is omitted. Complements `terms` of a model or graph
 /// (compiler/definition/compare.hpp). O(bodies) per point, in long double.
-Eigen::MatrixXd terms(const System& system, const std::vector<std::complex<double>>& points);
+Eigen::MatrixXd terms(const SystemData& data, const std::vector<std::complex<double>>& points);
 
 /// Largest difference between the transfers `a` and `exact` at these points, in the blocks of
 /// `measure` (compiler/definition/compare.hpp). `exact` are the system's own transfers. If it
@@ -17,6 +18,6 @@ Eigen::MatrixXd terms(const System& system, const std::vector<std::complex<doubl
 /// and the difference is computed again.
 Difference difference(const std::vector<Eigen::MatrixXcd>& a,
                       const std::vector<Eigen::MatrixXcd>& exact, Measure& measure,
-                      const System& system, const std::vector<std::complex<double>>& points);
+                      const SystemData& data, const std::vector<std::complex<double>>& points);
 
 }  // namespace titop::detail

@@ -11,6 +11,7 @@
 #include <titop/compiler/solve/frequency.hpp>
 #include <titop/compiler/system/elimination_terms.hpp>
 #include <titop/compiler/system/steps.hpp>
+#include <titop/compiler/system/transfer_part.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/name_order.hpp>
 
@@ -50,11 +51,10 @@ const char* digits_lost(const SystemData& d) {
 
 /// The model with only those inputs and outputs whose dynamics are not rounding: in some entry, the
 /// change with s agrees with finer arithmetic.
-StateSpace with_certain_ports(const System& system, const SystemData& d, const StateSpace& m) {
+StateSpace with_certain_ports(const SystemData& d, const StateSpace& m) {
   const std::complex<double> s = pick_s(d);
   const auto transfers = [&](std::complex<double> z) {
-    return std::pair(system.transfer(z, Precision::as_needed),
-                     detail::refined_transfers(m, {z}).front());
+    return std::pair(transfer_of(d, z), detail::refined_transfers(m, {z}).front());
   };
   const auto [exact, dense] = transfers(s);
   Eigen::MatrixX<bool> certain = Eigen::MatrixX<bool>::Zero(exact.rows(), exact.cols());
@@ -80,9 +80,9 @@ StateSpace with_certain_ports(const System& system, const SystemData& d, const S
 
 /// True if some output is 0 in finer arithmetic, and rounding in the dense model: the self-check
 /// compares outputs with their surroundings and may not see it.
-bool has_output_of_rounding(const System& system, const SystemData& d, const StateSpace& m) try {
+bool has_output_of_rounding(const SystemData& d, const StateSpace& m) try {
   const std::complex<double> s = pick_s(d);
-  const MatrixXd exact = system.transfer(s, Precision::as_needed).cwiseAbs(),
+  const MatrixXd exact = transfer_of(d, s).cwiseAbs(),
                  dense = refined_transfers(m, {s}).front().cwiseAbs();
   return (exact.rowwise().maxCoeff().array() < kCertain * dense.rowwise().maxCoeff().array()).any();
 } catch (const Error& error) {
@@ -96,16 +96,16 @@ constexpr double kUnclearDigits = 1e-3;
 /// Every port is judged by its own size, so one at rounding level would count as moved and seen. If
 /// digits are lost, only states that the other ports need are certain: part of the inputs and
 /// outputs needs no more states than all of them.
-void doubt_lost_digits(const System& system, const SystemData& d, const StateSpace& dense,
-                       MinimizeOptions options, OrderVerdict& v, std::vector<Note>& notes) {
+void doubt_lost_digits(const SystemData& d, const StateSpace& dense, MinimizeOptions options,
+                       OrderVerdict& v, std::vector<Note>& notes) {
   if (v.exact || v.lowest == 0 || dense.inputs.empty() || dense.outputs.empty()) return;
   const char* lost = digits_lost(d);
-  if (!lost && has_output_of_rounding(system, d, dense)) lost = "some output is rounding alone";
+  if (!lost && has_output_of_rounding(d, dense)) lost = "some output is rounding alone";
   if (!lost) return;
   options.resolution = std::max(options.resolution, kCertain);
   int certain = 0;
   try {
-    const StateSpace part = with_certain_ports(system, d, dense);
+    const StateSpace part = with_certain_ports(d, dense);
     if (!part.inputs.empty()) certain = minimize(part, options).order.lowest;
   } catch (const Error& error) {
     if (!error.has(Code::singular)) throw;  // no transfer: nothing is certain
@@ -143,11 +143,11 @@ std::vector<std::complex<double>> points_of_change(const SystemData& d, const St
 }
 
 /// `judged`: the dense model without rounding.
-Change change(const System& system, const SystemData& d, const StateSpace& dense,
-              const StateSpace& judged, const Minimized& m) {
+Change change(const SystemData& d, const StateSpace& dense, const StateSpace& judged,
+              const Minimized& m) {
   Change worst;
   for (const std::complex<double> s : points_of_change(d, judged, m)) {
-    const std::optional<MatrixXcd> G = transfer_if_any(system, s);
+    const std::optional<MatrixXcd> G = transfer_if_any(d, s);
     (G ? worst.tried : worst.left_out).push_back(s);
     if (!G) continue;
     const std::vector<std::complex<double>> here{s};
@@ -155,14 +155,14 @@ Change change(const System& system, const SystemData& d, const StateSpace& dense
     const MatrixXd as_written = terms(dense, here);
     const auto off = [&](const std::vector<MatrixXcd>& of, const MatrixXd& terms_there) {
       Measure by = measure(*d.skeleton->stage.source, terms_there);
-      return difference(of, exact, by, system, here).relative;
+      return difference(of, exact, by, d, here).relative;
     };
     worst.by_modes =
         std::max(worst.by_modes, off(minimal, as_written.cwiseMax(terms(m.model, here))));
     const auto digits = [&](const std::vector<MatrixXcd>& of) {
       Measure by = measure(*d.skeleton->stage.source, {});
       add_rounding(by, exact, of_nothing(as_written, exact));
-      return difference(of, exact, by, system, here).relative;
+      return difference(of, exact, by, d, here).relative;
     };
     const double lost = digits(minimal);
     if (lost > worst.in_all && lost > kAnotherDigit * digits(refined_transfers(dense, here)))
@@ -179,8 +179,8 @@ constexpr ExactOptions kCountedAlways = {.states = 60, .unknowns = 100},
 /// Removes states that exact arithmetic shows to be redundant: if it counts fewer states for the
 /// diagram's numbers than are kept, and the transfer keeps its digits without them. More states
 /// than are kept may be due to rounding of these numbers. False: nothing is removed.
-bool lower_to_exact_order(const System& system, const SystemData& d, const StateSpace& dense,
-                          const StateSpace& judged, Minimized& m) {
+bool lower_to_exact_order(const SystemData& d, const StateSpace& dense, const StateSpace& judged,
+                          Minimized& m) {
   if (m.order.exact) return false;
   const ExactOrder exact = minreal::order_of_stage(
       d.skeleton->stage, dense.order(), m.order.decided() ? kCountedAlways : kCountedInDoubt,
@@ -199,7 +199,7 @@ bool lower_to_exact_order(const System& system, const SystemData& d, const State
   fewer.order.removed.push_back({0, m.order.order - exact.order, found->tolerance, found->tolerance,
                                  "exact arithmetic counts it out"});
   const double allowed = std::max(kUnchanged, 10 * d.skeleton->options.resolution);
-  const Change by = change(system, d, dense, judged, fewer);
+  const Change by = change(d, dense, judged, fewer);
   if (by.tried.empty() || std::max(by.by_modes, by.in_all) > allowed) return false;
   fewer.order.change = by.by_modes;
   fewer.notes.insert(fewer.notes.begin(), to_string(fewer.order));
@@ -227,7 +227,7 @@ void say_left_out(const Change& by, std::vector<Note>& notes) {
 }
 
 /// Replaces the dense model by the minimal one, if its transfer keeps its digits.
-void minimize_checked(const System& system, const SystemData& d, DenseModel& m) {
+void minimize_checked(const SystemData& d, DenseModel& m) {
   StateSpace& dense = m.model;
   const double resolution = d.skeleton->options.resolution;
   const auto [judged, rounding] = without_rounding(d, dense);
@@ -236,17 +236,17 @@ void minimize_checked(const System& system, const SystemData& d, DenseModel& m) 
                                 .energy = d.states.trivial() ? MatrixXd() : potential_energy(d),
                                 .rounding = rounding};
   Minimized minimal = minreal::minimize_unmeasured(judged, options);
-  doubt_lost_digits(system, d, judged, options, minimal.order, m.notes);
+  doubt_lost_digits(d, judged, options, minimal.order, m.notes);
   if (m.error.beside_largest.error > kUnclearDigits && !minimal.order.exact)
     minimal.order.highest = dense.order();
-  lower_to_exact_order(system, d, dense, judged, minimal);
+  lower_to_exact_order(d, dense, judged, minimal);
   if (dense.inputs.empty() || dense.outputs.empty()) doubt_unmeasured(minimal.order);
   if (!minimal.notes.empty()) minimal.notes.front() = to_string(minimal.order);
   const bool removed = !minimal.order.removed.empty();
   double lost = 0;
   bool untried = false;
   if (removed && !dense.inputs.empty() && !dense.outputs.empty()) {
-    const Change by = change(system, d, dense, judged, minimal);
+    const Change by = change(d, dense, judged, minimal);
     minimal.order.change = by.by_modes;
     minimal.notes.front() = to_string(minimal.order);
     untried = by.tried.empty();
@@ -257,7 +257,7 @@ void minimize_checked(const System& system, const SystemData& d, DenseModel& m) 
     if (untried)
       minimal.notes.back() =
           "nothing was removed: near the removed modes the factors have no digit";
-    if (!lower_to_exact_order(system, d, dense, judged, minimal)) {
+    if (!lower_to_exact_order(d, dense, judged, minimal)) {
       m.notes.push_back({Note::Kind::warning, "minimize",
                          fmt::format("{}: {}", minimal.notes.back(), minimal.notes.front())});
       m.order = std::move(minimal.order);
@@ -275,8 +275,7 @@ void minimize_checked(const System& system, const SystemData& d, DenseModel& m) 
 
 }  // namespace titop::detail
 
-titop::detail::DenseModel titop::steps::minimize(const System& system,
-                                                 const detail::SystemData& data,
+titop::detail::DenseModel titop::steps::minimize(const detail::SystemData& data,
                                                  detail::DenseModel m) {
   const Options& options = data.skeleton->options;
   const int states = m.model.order();
@@ -289,6 +288,6 @@ titop::detail::DenseModel titop::steps::minimize(const System& system,
                        fmt::format("not run: {} states are more than {} (Options::minimize_up_to)",
                                    states, up_to)});
   else if (states > 0)
-    detail::minimize_checked(system, data, m);
+    detail::minimize_checked(data, m);
   return m;
 }

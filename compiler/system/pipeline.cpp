@@ -20,9 +20,9 @@ using detail::DenseModel;
 using detail::SystemData;
 using steps::Compiled;
 
-using OnGraph = Stage (*)(Stage);          ///< compiler/passes/passes.hpp
-using OnNumbers = Compiled (*)(Compiled);  ///< compiler/system/steps.hpp
-using OnDense = DenseModel (*)(const System&, const SystemData&, DenseModel);  ///< the same
+using OnGraph = Stage (*)(Stage);                               ///< compiler/passes/passes.hpp
+using OnNumbers = Compiled (*)(Compiled);                       ///< compiler/system/steps.hpp
+using OnDense = DenseModel (*)(const SystemData&, DenseModel);  ///< the same
 
 struct Pass {
   CompilerPass is;
@@ -174,14 +174,10 @@ std::span<const CompilerPass> compiler_passes() {
   return all;
 }
 
-System compile(const Diagram& diagram, const Options& options) {
-  check_options(options);
-  return System(detail::compile_graph(diagram.graph(), options));
-}
-
 namespace detail {
 
 std::shared_ptr<const SystemData> compile_graph(const Graph& graph, const Options& options) {
+  check_options(options);
   return compile_stage(as_written(graph), options);
 }
 
@@ -206,12 +202,12 @@ std::shared_ptr<const SystemData> compile_stage(Stage begin, const Options& opti
   return run(std::move(begin), options);
 }
 
-DenseModel dense_model(const System& system, const SystemData& data) {
+DenseModel dense_model(const SystemData& data) {
   DenseModel m;
   std::vector<std::pair<std::string, double>> seconds;
   for (const Pass& pass : kPasses)
     if (const auto* on_dense = std::get_if<OnDense>(&pass.run))
-      timed(seconds, pass.is.name, [&] { m = (*on_dense)(system, data, std::move(m)); });
+      timed(seconds, pass.is.name, [&] { m = (*on_dense)(data, std::move(m)); });
   m.seconds = std::move(seconds);
   return m;
 }

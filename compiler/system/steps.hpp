@@ -61,12 +61,10 @@ Compiled certify(Compiled c);
 
 /// DenseModel::model, error: A, B, C, D are written from the factors and compared with them.
 /// O(n^2); see compiler/certificate/dense_check.hpp. Throws not_finite.
-detail::DenseModel dense(const System& system, const detail::SystemData& data,
-                         detail::DenseModel model);
+detail::DenseModel dense(const detail::SystemData& data, detail::DenseModel model);
 
 /// DenseModel::order: the model is minimal, up to Options::minimize_up_to states, if the change of
 /// its transfer near the removed modes is below 1e-8 (or ten times Options::resolution). O(n^3).
-detail::DenseModel minimize(const System& system, const detail::SystemData& data,
-                            detail::DenseModel model);
+detail::DenseModel minimize(const detail::SystemData& data, detail::DenseModel model);
 
 }  // namespace titop::steps

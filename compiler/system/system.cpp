@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <titop/compiler/certificate/without_rounding.hpp>
 #include <titop/compiler/realization/energy.hpp>
 #include <titop/compiler/realization/write_model.hpp>
-#include <titop/compiler/solve/transfer_blocks.hpp>
+#include <titop/compiler/system/compile_graph.hpp>
 #include <titop/compiler/system/damping_of_bodies.hpp>
 #include <titop/compiler/system/system.hpp>
 #include <titop/compiler/system/system_data.hpp>
@@ -41,16 +40,7 @@ System::Rates System::apply(const VectorXd& x, const VectorXd& u) const {
 }
 
 MatrixXcd System::transfer(std::complex<double> s, Precision precision) const {
-  return detail::transfer_part(*data_, s, {detail::all_inputs(*data_), {}}, precision).columns;
-}
-
-std::optional<MatrixXcd> detail::transfer_if_any(const System& system, std::complex<double> s) {
-  try {
-    return system.transfer(s);
-  } catch (const Error& error) {
-    if (!error.has(Code::singular) && !error.has(Code::not_finite)) throw;
-    return {};
-  }
+  return detail::transfer_of(*data_, s, precision);
 }
 
 std::vector<MatrixXcd> System::frequency_response(std::span<const double> omega, int threads,
@@ -74,7 +64,7 @@ MatrixXd System::static_gain() const {
 
 const detail::DenseModel& System::dense() const {
   require_state_space(data_->graph());
-  std::call_once(data_->dense_once, [&] { data_->dense = detail::dense_model(*this, *data_); });
+  std::call_once(data_->dense_once, [&] { data_->dense = detail::dense_model(*data_); });
   return data_->dense;
 }
 
@@ -184,6 +174,24 @@ std::string System::dense_log() const { return lines_of(dense_notes()); }
 const std::vector<std::pair<std::string, double>>& System::seconds() const& {
   return data_->seconds;
 }
+
+System System::update(const ParameterList& values) const {
+  return System(detail::updated(*data_, values));
+}
+
+std::vector<std::pair<std::string, double>> System::parameters() const {
+  std::vector<std::pair<std::string, double>> result;
+  const auto& list = data_->graph().parameters;
+  for (std::size_t i = 0; i < list.size(); ++i)
+    result.emplace_back(list[i].name, data_->numbers.parameters[i]);
+  return result;
+}
+
+System compile(const Diagram& diagram, const Options& options) {
+  return System(detail::compile_graph(diagram.graph(), options));
+}
+
+const detail::SystemData& detail::data_of(const System& system) { return *system.data_; }
 
 const detail::Check& detail::SystemData::checked() const {
   std::call_once(check_once, [&] { check = certify(*this); });

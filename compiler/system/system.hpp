@@ -1,7 +1,6 @@
 #pragma once
 
 #include <complex>
-#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -13,6 +12,7 @@
 #include <titop/compiler/realization/descriptor.hpp>
 #include <titop/compiler/realization/modal.hpp>
 #include <titop/compiler/system/pipeline.hpp>
+#include <titop/compiler/system/precision.hpp>
 #include <titop/graph/diagram.hpp>
 #include <titop/graph/state_space.hpp>
 #include <utility>
@@ -21,37 +21,12 @@
 namespace titop {
 
 class System;
-namespace passes {
-struct ToOpen;
-}
 namespace detail {
 struct DenseModel;
 struct SystemData;
-std::shared_ptr<const SystemData> compile_opened(const System&, const std::vector<passes::ToOpen>&);
-Eigen::MatrixXcd in_long_double(const System&, std::complex<double>);
-std::shared_ptr<const SystemData> compile_rewritten(const System&,
-                                                    const std::function<Stage(const Stage&)>&);
+/// For the library's own files, as compiler/system/system_data.hpp.
+const SystemData& data_of(const System& system);
 }  // namespace detail
-class Excitation;
-struct Full;
-struct FullCertificate;
-struct Simulation;
-struct Trajectory;
-
-/// Arithmetic of a transfer, coarse to fine. All use the same elimination on the same plan; blocks
-/// are evaluated in it too, from data that are doubles.
-enum class Precision {
-  standard,  ///< double: 16 digits; one step of refinement after the elimination
-  refined,   ///< factors in double, blocks and residuals in long double: refined until the outputs
-             ///< settle, or refused; see System::transfer
-  twofold,   ///< the same in double-double: 32 digits, on any machine
-  digits50,  ///< 50 digits (Boost.Multiprecision), some hundred times slower
-  as_needed  ///< double; if its error, estimated from pivots, rounding and refinement, exceeds
-             ///< 1e-12: refined or twofold if they converge, else 50 digits. If double finds no
-             ///< pivot although s is no pole, as in wide grids: double-double or 50 digits;
-             ///< singular if rounding of the data alone changes all digits (far below all modes of
-             ///< a closed chain)
-};
 
 /// Values of parameters by name: {{"k1", 12.0}, {"angle", 0.3}}.
 using ParameterList = std::vector<std::pair<std::string, double>>;
@@ -201,13 +176,7 @@ class System {
  private:
   const detail::DenseModel& dense() const;
 
-  friend FullCertificate certify(const System&, const Full&);
-  friend Trajectory simulate(const System&, const Excitation&, const Simulation&);
-  friend std::shared_ptr<const detail::SystemData> detail::compile_opened(
-      const System&, const std::vector<passes::ToOpen>&);
-  friend Eigen::MatrixXcd detail::in_long_double(const System&, std::complex<double>);
-  friend std::shared_ptr<const detail::SystemData> detail::compile_rewritten(
-      const System&, const std::function<Stage(const Stage&)>&);
+  friend const detail::SystemData& detail::data_of(const System&);
 
   std::shared_ptr<const detail::SystemData> data_;
 };

@@ -2,11 +2,10 @@
 
 #include <memory>
 #include <mutex>
-#include <optional>
+#include <span>
 #include <titop/compiler/certificate/check.hpp>
 #include <titop/compiler/solve/factored.hpp>
 #include <titop/compiler/system/dense_model.hpp>
-#include <titop/compiler/system/system.hpp>
 
 /// The data behind a System. For the library's own files only.
 namespace titop::detail {
@@ -42,11 +41,12 @@ bool moves_chains(const Skeleton& skeleton, const std::vector<int>& changed, Par
 /// Throws not_finite.
 [[noreturn]] void refuse_overflow(const std::string& subject);
 
-/// The transfer if there is one: none at a pole, without a digit, or if it overflows.
-std::optional<Eigen::MatrixXcd> transfer_if_any(const System& system, std::complex<double> s);
-
 /// All passes of `compile` once more for these values of the parameters. States that followed from
 /// the others still do, if that keeps the digits.
 std::shared_ptr<SystemData> compile_again(const SystemData& old, const std::vector<double>& values);
+
+/// See System::update.
+std::shared_ptr<const SystemData> updated(const SystemData& old,
+                                          std::span<const std::pair<std::string, double>> values);
 
 }  // namespace titop::detail

@@ -183,10 +183,23 @@ TransferPart transfer_part(const SystemData& data, Double s, const PartOfTransfe
   return result;
 }
 
-Eigen::MatrixXcd in_long_double(const System& system, Double s) {
+Eigen::MatrixXcd transfer_of(const SystemData& data, Double s, Precision precision) {
+  return transfer_part(data, s, {all_inputs(data), {}}, precision).columns;
+}
+
+std::optional<Eigen::MatrixXcd> transfer_if_any(const SystemData& data, Double s) {
+  try {
+    return transfer_of(data, s);
+  } catch (const Error& error) {
+    if (!error.has(Code::singular) && !error.has(Code::not_finite)) throw;
+    return {};
+  }
+}
+
+Eigen::MatrixXcd in_long_double(const SystemData& data, Double s) {
   TransferCost cost;
-  const PartOfTransfer all{all_inputs(*system.data_), {}};
-  return in_precision<Extended>({*system.data_, s, all, cost}, solve::Refinement::none).columns;
+  const PartOfTransfer all{all_inputs(data), {}};
+  return in_precision<Extended>({data, s, all, cost}, solve::Refinement::none).columns;
 }
 
 }  // namespace titop::detail

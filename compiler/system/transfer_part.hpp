@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <titop/compiler/system/system.hpp>
+#include <complex>
+#include <optional>
+#include <titop/compiler/system/precision.hpp>
 #include <vector>
 
 namespace titop {
@@ -18,6 +20,8 @@ struct TransferCost {
 
 /// Columns and rows of a transfer at one s, in any precision.
 namespace titop::detail {
+
+struct SystemData;
 
 /// Inputs whose columns and outputs whose rows are asked for: indices in the graph.
 struct PartOfTransfer {
@@ -37,7 +41,15 @@ struct TransferPart {
 TransferPart transfer_part(const SystemData& data, std::complex<double> s,
                            const PartOfTransfer& part, Precision precision = Precision::as_needed);
 
+/// All columns: see System::transfer.
+Eigen::MatrixXcd transfer_of(const SystemData& data, std::complex<double> s,
+                             Precision precision = Precision::as_needed);
+
+/// The same if there is a transfer: none at a pole, without a digit, or if it overflows.
+std::optional<Eigen::MatrixXcd> transfer_if_any(const SystemData& data, std::complex<double> s);
+
 /// The transfer by an elimination in long double, neither refined nor judged: its difference to
 /// Precision::standard is the rounding of the elimination. Throws as System::transfer. O(bodies).
-Eigen::MatrixXcd in_long_double(const System& system, std::complex<double> s);
+Eigen::MatrixXcd in_long_double(const SystemData& data, std::complex<double> s);
+
 }  // namespace titop::detail

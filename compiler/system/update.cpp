@@ -12,8 +12,7 @@
 #include <unordered_set>
 
 /// New values of the parameters on the same plan: recomputes only the parts that depend on them.
-namespace titop {
-namespace detail {
+namespace titop::detail {
 namespace {
 
 using linalg::at;
@@ -91,7 +90,7 @@ std::vector<Dependents> find_dependents(const Stage& stage, const solve::JointSy
 namespace {
 
 /// The parameters that get another value, and the values of all.
-std::vector<int> set_values(const Graph& g, const ParameterList& list,
+std::vector<int> set_values(const Graph& g, std::span<const std::pair<std::string, double>> list,
                             std::vector<double>& values) {
   std::vector<Mistake> mistakes;
   std::vector<int> changed;
@@ -215,8 +214,10 @@ std::string text_of(const Skeleton& k, const std::vector<int>& changed, Paramete
 }
 
 /// All passes again; notes it, and whether the states have changed.
-System compiled_again(const SystemData& old, const std::vector<int>& changed,
-                      const std::vector<double>& values, const char* why) {
+std::shared_ptr<const SystemData> compiled_again(const SystemData& old,
+                                                 const std::vector<int>& changed,
+                                                 const std::vector<double>& values,
+                                                 const char* why) {
   const std::shared_ptr<SystemData> d = compile_again(old, values);
   d->notes.push_back(
       {Note::Kind::info, "update",
@@ -225,7 +226,7 @@ System compiled_again(const SystemData& old, const std::vector<int>& changed,
     d->notes.push_back(
         {Note::Kind::warning, "update",
          "the dependent states have changed: the model has other states than before"});
-  return System(d);
+  return d;
 }
 
 /// True if a value has moved so far that the scaling found for another one may not serve.
@@ -280,18 +281,17 @@ void renew_degree_notes(const Skeleton& k, ParameterValues before, SystemData& d
 }
 
 }  // namespace
-}  // namespace detail
 
-System System::update(const ParameterList& list) const {
-  using namespace detail;
-  const Skeleton& k = *data_->skeleton;
+std::shared_ptr<const SystemData> updated(const SystemData& old,
+                                          std::span<const std::pair<std::string, double>> list) {
+  const Skeleton& k = *old.skeleton;
   auto d = std::make_shared<SystemData>();
-  d->skeleton = data_->skeleton;
-  d->numbers = data_->numbers;
-  d->states = data_->states;
+  d->skeleton = old.skeleton;
+  d->numbers = old.numbers;
+  d->states = old.states;
   const std::vector<int> changed = set_values(k.stage.graph, list, d->numbers.parameters);
   const auto again = [&](const char* why) {
-    return compiled_again(*data_, changed, d->numbers.parameters, why);
+    return compiled_again(old, changed, d->numbers.parameters, why);
   };
   constexpr const char* kSingular =
       "the equations as written are singular, as where a point has no mass";
@@ -302,43 +302,35 @@ System System::update(const ParameterList& list) const {
   if (!k.stage.opened.empty()) return again(kOpened);
   // The reduction depends on all rows and all numbers.
   if (k.before_reduce) return again(kSingular);
-  if (moves_chains(k, changed, data_->numbers.parameters, d->numbers.parameters))
+  if (moves_chains(k, changed, old.numbers.parameters, d->numbers.parameters))
     return again(kOtherTerms);
   if (!remake_coefficients(k, united(k, changed, &Dependents::origins), d->numbers))
     return again(kOtherTerms);
-  refactor(*data_, changed, *d);
+  refactor(old, changed, *d);
   const solve::Health health = d->factors->health();
   if (health.singular) return again(kNoDigit);  // it may reduce: a mass of 0
-  d->notes = data_->notes;
+  d->notes = old.notes;
   std::erase_if(d->notes, [](const Note& n) { return n.pass == "update" || n.pass == "digits"; });
-  renew_degree_notes(k, data_->numbers.parameters, *d);
+  renew_degree_notes(k, old.numbers.parameters, *d);
   const std::vector<Note> digits = judge_data_digits(*d);
   d->notes.insert(d->notes.end(), digits.begin(), digits.end());
   d->notes.push_back(
       {Note::Kind::info, "update",
        fmt::format("{}: {} of {} fronts recomputed", text_of(k, changed, d->numbers.parameters),
                    d->factors->fronts_made(), k.joint.plan->fronts.size())});
-  d->margins = data_->margins;
+  d->margins = old.margins;
   d->changed_loops = united(k, changed, &Dependents::loops);
-  d->changed_loops.insert(d->changed_loops.end(), data_->changed_loops.begin(),
-                          data_->changed_loops.end());
+  d->changed_loops.insert(d->changed_loops.end(), old.changed_loops.begin(),
+                          old.changed_loops.end());
   sort_unique(d->changed_loops);
   // A pivot about as weak as before (within a digit) has been judged then.
   constexpr double kWeaker = 0.1;
-  if (health.weakest < std::min(kFewDigits, kWeaker * data_->scaled_health.weakest)) {
+  if (health.weakest < std::min(kFewDigits, kWeaker * old.scaled_health.weakest)) {
     update_margins(*d);
     d->weak_pivots = judge_weak_pivots(*d, *d->margins);
     if (d->weak_pivots->least > 0) return again(kNoDigit);
   }
-  return System(std::move(d));
+  return d;
 }
 
-std::vector<std::pair<std::string, double>> System::parameters() const {
-  std::vector<std::pair<std::string, double>> result;
-  const auto& list = data_->graph().parameters;
-  for (std::size_t i = 0; i < list.size(); ++i)
-    result.emplace_back(list[i].name, data_->numbers.parameters[i]);
-  return result;
-}
-
-}  // namespace titop
+}  // namespace titop::detail

@@ -4,7 +4,7 @@
 #include <optional>
 #include <titop/analysis/simulation/hold.hpp>
 #include <titop/compiler/realization/proportional.hpp>
-#include <titop/compiler/system/system_data.hpp>
+#include <titop/compiler/system/transfer_part.hpp>
 #include <titop/emit/cpp/form.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/eigen.hpp>
@@ -196,7 +196,8 @@ Points response_points(const System& system, const std::vector<Pole>& poles) {
     const double w = 0.3 * low * std::pow(9 * (high / low), double(i) / (count - 1));
     const std::complex<double> s(0.1 * w, w);
     // Far below the modes of a closed chain the factors may have no digit.
-    const std::optional<MatrixXcd> exact = titop::detail::transfer_if_any(system, s);
+    const std::optional<MatrixXcd> exact =
+        titop::detail::transfer_if_any(titop::detail::data_of(system), s);
     if (!exact) continue;
     points.s.push_back(s);
     points.exact.push_back(*exact);
