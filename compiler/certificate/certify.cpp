@@ -70,20 +70,14 @@ Check certify(const Factored& d) {
   // At distance delta from singular the margin is about 4/delta, and a pivot keeps delta/2.
   const double by_margin = 4 / c.margin, by_pivot = 2 * c.weakest_pivot;
   if (by_margin < kFewDigits)
-    check.notes.push_back({Note::Kind::warning, "certify",
-                           fmt::format("the loop at {} has margin {:.2g}: {} left", c.margin_where,
-                                       c.margin, digits_at(by_margin))});
+    check.warn(fmt::format("the loop at {} has margin {:.2g}: {} left", c.margin_where, c.margin,
+                           digits_at(by_margin)));
   else if (by_pivot < kFewDigits)
-    check.notes.push_back({Note::Kind::warning, "certify",
-                           fmt::format("the pivot at {} is {:.1e} of its terms: {} left",
-                                       c.weakest_where, c.weakest_pivot, digits_at(by_pivot))});
+    check.warn(fmt::format("the pivot at {} is {:.1e} of its terms: {} left", c.weakest_where,
+                           c.weakest_pivot, digits_at(by_pivot)));
   if (c.residual > kWarn)
-    check.notes.push_back(
-        {Note::Kind::warning, "certify",
-         fmt::format("{} is satisfied only to {:.1g}", c.residual_where, c.residual)});
-  if (weak.least > 0)
-    check.notes.push_back(
-        {Note::Kind::warning, "certify", "no digit remains: in double a pivot is rounding alone"});
+    check.warn(fmt::format("{} is satisfied only to {:.1g}", c.residual_where, c.residual));
+  if (weak.least > 0) check.warn("no digit remains: in double a pivot is rounding alone");
   return check;
 }
 

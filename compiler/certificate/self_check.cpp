@@ -218,7 +218,7 @@ void find_lost(const Factored& d, Evaluation<double>& point, double s, Check& ch
   check.lost = std::min(check.lost, told);
 }
 
-Note note_of(const ApplyDifference& found, double s) {
+std::string words_of(const ApplyDifference& found, double s) {
   const std::string why =
       found.prevented.empty()
           ? "please report this diagram"
@@ -226,10 +226,9 @@ Note note_of(const ApplyDifference& found, double s) {
                 "closed chains prevent the motion {}, which an equation prescribes: remove "
                 "that equation, or open the chain",
                 found.prevented);
-  return {Note::Kind::warning, "certify",
-          fmt::format("apply and the transfer differ by {:.1g} at s = {:.3g}, so do A, B, C, D and "
-                      "simulate: {}",
-                      found.worst, s, why)};
+  return fmt::format(
+      "apply and the transfer differ by {:.1g} at s = {:.3g}, so do A, B, C, D and simulate: {}",
+      found.worst, s, why);
 }
 
 /// At one real s: equations that hold for every real s hold for every s, at half the arithmetic.
@@ -247,14 +246,13 @@ void check_at_s(const Factored& d, const RowMatrix<double>& u, double s, Check& 
   if (!has_closed_form(d.graph())) {
     const ApplyDifference found = apply_difference(d, point, u, s, check.lost);
     check.certificate.apply_against_transfer = found.worst;
-    if (found.worst > kWarn) check.notes.push_back(note_of(found, s));
+    if (found.worst > kWarn) check.warn(words_of(found, s));
   }
   if (const double lost = check.lost; lost > kWarn)
-    check.notes.push_back(
-        {Note::Kind::warning, "certify",
-         fmt::format("in double the outputs are accurate to {:.1g} at s = {:.3g}: transfer uses "
-                     "finer arithmetic, apply and A, B, C, D have only these digits",
-                     lost, s)});
+    check.warn(
+        fmt::format("in double the outputs are accurate to {:.1g} at s = {:.3g}: transfer uses "
+                    "finer arithmetic, apply and A, B, C, D have only these digits",
+                    lost, s));
 }
 
 }  // namespace

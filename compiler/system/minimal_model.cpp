@@ -39,13 +39,9 @@ int exact_order_of(const SystemData& d, int states, std::vector<Note>& notes) {
 constexpr double kCertain = 1e-6;
 constexpr double kMoving = 1e-9;  ///< of an entry: a smaller change with s may be rounding
 
-/// The self-check's warning of lost digits, in equations, pivots, loops or outputs; null: none.
+/// Which digits the certificate of the factors finds lost; null: none.
 const char* digits_lost(const SystemData& d) {
-  const std::vector<Note>& notes = d.checked().notes;
-  if (std::any_of(notes.begin(), notes.end(), [](const Note& n) {
-        return n.pass == "certify" && n.kind == Note::Kind::warning;
-      }))
-    return "digits are lost (see certify)";
+  if (d.checked().digits_lost) return "digits are lost (see certify)";
   return d.checked().rounding_alone ? "some output is rounding alone" : nullptr;
 }
 

@@ -56,7 +56,7 @@ Compiled digits(Compiled c);
 bool has_data(const Compiled& c);
 
 /// The certificate: a function of all the others. No pass before it depends on it; `minimize`
-/// reads its warnings.
+/// asks it whether digits are lost.
 Compiled certify(Compiled c);
 
 /// DenseModel::model, error: A, B, C, D are written from the factors and compared with them.
