@@ -9,6 +9,7 @@
 #include <titop/compiler/minreal/poles.hpp>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/rounding.hpp>
+#include <titop/graph/support/each_once.hpp>
 
 namespace titop::detail {
 
@@ -62,8 +63,7 @@ std::vector<double> structured(const std::vector<std::complex<double>>& roots, d
   std::sort(list.begin(), list.end());
   const std::size_t count = list.size();
   for (std::size_t i = 0; i + 1 < count; ++i) add(std::sqrt(list[i]) * std::sqrt(list[i + 1]));
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
+  detail::keep_each_once(list);
   return list;
 }
 

@@ -6,6 +6,7 @@
 #include <titop/analysis/control/feedback.hpp>
 #include <titop/analysis/control/nyquist.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/support/each_once.hpp>
 
 namespace titop::detail {
 namespace {
@@ -92,8 +93,7 @@ std::vector<double> steps(double from, double to, const std::vector<Complex>& po
   }
   if (const double step = pi / 4 / delay; delay > 0)
     for (double omega = from + step; omega < to; omega += step) list.push_back(omega);
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
+  detail::keep_each_once(list);
   return list;
 }
 

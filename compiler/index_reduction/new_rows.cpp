@@ -2,6 +2,7 @@
 #include <titop/compiler/index_reduction/new_rows.hpp>
 #include <titop/compiler/solve/piece_matrix.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/support/each_once.hpp>
 
 namespace titop::detail {
 namespace {
@@ -44,8 +45,7 @@ JointSystem NewRows::joint() {
       if (p.entry >= 0) p.entry = over[at(p.entry)];
     if (const auto found = by_group_.find(r); found != by_group_.end())
       rewrite(r, found->second, pieces, over);
-    std::sort(over.begin(), over.end());
-    over.erase(std::unique(over.begin(), over.end()), over.end());
+    detail::keep_each_once(over);
     for (Piece& p : pieces)
       if (p.entry >= 0)
         p.entry =

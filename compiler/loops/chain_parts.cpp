@@ -1,17 +1,9 @@
-#include <algorithm>
 #include <titop/compiler/loops/chain_parts.hpp>
 #include <titop/compiler/loops/motion.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/support/each_once.hpp>
 
 namespace titop::loops {
-namespace {
-
-void keep_each_once(std::vector<int>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
-
-}  // namespace
 
 ChainParts parts_of_chains(const Stage& stage) {
   const Graph& g = stage.graph;
@@ -26,7 +18,7 @@ ChainParts parts_of_chains(const Stage& stage) {
       if (linalg::at(point) < g.channels.size())  // not the ground
         parts.nodes.push_back(g.channels[linalg::at(point)].node);
   }
-  keep_each_once(parts.equations), keep_each_once(parts.nodes);
+  detail::keep_each_once(parts.equations), detail::keep_each_once(parts.nodes);
   return parts;
 }
 

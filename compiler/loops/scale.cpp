@@ -2,6 +2,7 @@
 #include <cmath>
 #include <titop/compiler/loops/relations.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/support/each_once.hpp>
 
 namespace titop::loops {
 namespace {
@@ -48,8 +49,7 @@ struct RelationScaling {
   void list(std::size_t b) {
     const RowBlock& block = r.blocks[b];
     std::vector<int> units = r.unit[b];
-    std::sort(units.begin(), units.end());
-    units.erase(std::unique(units.begin(), units.end()), units.end());
+    detail::keep_each_once(units);
     MatrixXd sizes = MatrixXd::Zero(std::ssize(units), block.M.cols());
     for (Index i = 0; i < block.M.rows(); ++i) {
       const auto u = std::lower_bound(units.begin(), units.end(), r.unit[b][at(i)]);
@@ -150,8 +150,7 @@ struct RelationScaling {
   }
   /// By their largest entries in units that have a factor; the other units there.
   std::vector<int> start_columns(std::vector<int> reached) {
-    std::sort(reached.begin(), reached.end());
-    reached.erase(std::unique(reached.begin(), reached.end()), reached.end());
+    detail::keep_each_once(reached);
     std::vector<int> units;
     for (const int j : reached) {
       double largest = 0;
@@ -170,8 +169,7 @@ struct RelationScaling {
   }
   void spread(std::vector<int> units) {
     while (!units.empty()) {
-      std::sort(units.begin(), units.end());
-      units.erase(std::unique(units.begin(), units.end()), units.end());
+      detail::keep_each_once(units);
       std::vector<int> reached;
       for (const int unit : units) start_unit(unit, false, reached);
       units = start_columns(std::move(reached));

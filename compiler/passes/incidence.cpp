@@ -1,7 +1,7 @@
-#include <algorithm>
 #include <titop/compiler/passes/incidence.hpp>
 #include <titop/graph/ahead.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/support/each_once.hpp>
 
 namespace titop::passes {
 namespace {
@@ -170,8 +170,7 @@ Incidence incidence(const Graph& g, bool by_scalar, Sight sight) {
     inc.first_row.push_back(inc.row_vertices());
     for (int k = 0; k < count; ++k) {
       auto& list = lists[at(k)];
-      std::sort(list.begin(), list.end());
-      list.erase(std::unique(list.begin(), list.end()), list.end());
+      detail::keep_each_once(list);
       inc.mentioned.insert(inc.mentioned.end(), list.begin(), list.end());
       inc.begin.push_back(static_cast<int>(inc.mentioned.size()));
       inc.row_of_vertex.push_back(r);

@@ -3,6 +3,7 @@
 #include <titop/compiler/passes/incidence.hpp>
 #include <titop/compiler/solve/joint.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/support/each_once.hpp>
 
 namespace titop::solve {
 namespace {
@@ -170,8 +171,7 @@ struct JointBuilder {
   /// would be carried through the fronts of all of them: it is split into partial sums, which are
   /// unknowns.
   void close_row(int stage_row, int size) {
-    std::sort(over.begin(), over.end());
-    over.erase(std::unique(over.begin(), over.end()), over.end());
+    detail::keep_each_once(over);
     const Row& row = stage.rows[at(stage_row)];
     const int target = row.equation >= 0 ? g.equations[at(row.equation)].target : row.output;
     if (!reads_states())

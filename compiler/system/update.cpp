@@ -9,6 +9,7 @@
 #include <titop/compiler/solve/weak_pivot.hpp>
 #include <titop/compiler/system/system_data.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/support/each_once.hpp>
 #include <unordered_set>
 
 /// New values of the parameters on the same plan: recomputes only the parts that depend on them.
@@ -16,11 +17,6 @@ namespace titop::detail {
 namespace {
 
 using linalg::at;
-
-void sort_unique(std::vector<int>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
 
 /// The parameters on which each coefficient depends, by its index.
 std::vector<const std::vector<int>*> parameters_of_coefficients(const Stage& stage,
@@ -72,8 +68,8 @@ std::vector<Dependents> find_dependents(const Stage& stage, const solve::JointSy
     }
   }
   for (Dependents& d : result) {
-    sort_unique(d.nodes);
-    sort_unique(d.rows);
+    keep_each_once(d.nodes);
+    keep_each_once(d.rows);
     const auto add_loop = [&](int stage_row) {
       if (stage_row >= 0 && loop_of_row[at(stage_row)] >= 0)
         d.loops.push_back(loop_of_row[at(stage_row)]);
@@ -82,7 +78,7 @@ std::vector<Dependents> find_dependents(const Stage& stage, const solve::JointSy
     // Equations that are written out have no row of their own there.
     for (const int o : d.origins)
       if (at(o) < g.equations.size()) add_loop(row_of_equation[at(o)]);
-    sort_unique(d.loops);
+    keep_each_once(d.loops);
   }
   return result;
 }
@@ -129,7 +125,7 @@ std::vector<int> set_values(const Graph& g, std::span<const std::pair<std::strin
     changed.push_back(index);
   }
   if (!mistakes.empty()) throw Error(std::move(mistakes));
-  sort_unique(changed);
+  keep_each_once(changed);
   return changed;
 }
 
@@ -140,7 +136,7 @@ std::vector<int> united(const Skeleton& k, const std::vector<int>& changed, Memb
     const std::vector<int>& list = k.dependents[at(p)].*member;
     result.insert(result.end(), list.begin(), list.end());
   }
-  if (changed.size() > 1) sort_unique(result);
+  if (changed.size() > 1) keep_each_once(result);
   return result;
 }
 
@@ -322,7 +318,7 @@ std::shared_ptr<const SystemData> updated(const SystemData& old,
   d->changed_loops = united(k, changed, &Dependents::loops);
   d->changed_loops.insert(d->changed_loops.end(), old.changed_loops.begin(),
                           old.changed_loops.end());
-  sort_unique(d->changed_loops);
+  keep_each_once(d->changed_loops);
   // A pivot about as weak as before (within a digit) has been judged then.
   constexpr double kWeaker = 0.1;
   if (health.weakest < std::min(kFewDigits, kWeaker * old.scaled_health.weakest)) {

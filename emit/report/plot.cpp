@@ -5,6 +5,7 @@
 #include <titop/compiler/diagram/text.hpp>
 #include <titop/emit/report/html.hpp>
 #include <titop/emit/report/plot.hpp>
+#include <titop/graph/support/each_once.hpp>
 
 namespace titop::report {
 namespace {
@@ -138,8 +139,7 @@ class Path {
     std::vector<std::size_t> keep = {0, static_cast<std::size_t>(lowest - points_.begin()),
                                      static_cast<std::size_t>(highest - points_.begin()),
                                      points_.size() - 1};
-    std::sort(keep.begin(), keep.end());
-    keep.erase(std::unique(keep.begin(), keep.end()), keep.end());
+    detail::keep_each_once(keep);
     for (const std::size_t i : keep) {
       text_ += fmt::format("{}{:.1f} {:.1f}", pen_down_ ? "L" : "M", points_[i].first,
                            points_[i].second);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <titop/emit/report/sweep.hpp>
+#include <titop/graph/support/each_once.hpp>
 
 namespace titop::report {
 namespace {
@@ -35,8 +36,7 @@ std::vector<double> grid(const Subject& s) {
         if (k > 0 || (sign > 0 && std::abs(p.damping) > 1e-6))
           add(p.omega * (1 + sign * k * width));
   }
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
+  detail::keep_each_once(list);
   return list;
 }
 

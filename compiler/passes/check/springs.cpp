@@ -9,6 +9,7 @@
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
+#include <titop/graph/support/each_once.hpp>
 #include <utility>
 
 namespace titop::passes {
@@ -64,8 +65,7 @@ std::vector<std::vector<int>> tied(const ForceGains& gains, std::size_t channels
     sets.union_set(at(pair.first), at(pair.second));
     all.insert(all.end(), {pair.first, pair.second});
   }
-  std::sort(all.begin(), all.end());
-  all.erase(std::unique(all.begin(), all.end()), all.end());
+  detail::keep_each_once(all);
   for (const int c : all) by_set[sets.find_set(at(c))].push_back(c);
   std::vector<std::vector<int>> result;
   for (auto& [set, list] : by_set) result.push_back(std::move(list));

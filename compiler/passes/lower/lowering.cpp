@@ -5,6 +5,7 @@
 #include <titop/compiler/passes/lower/open_motions.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/support/each_once.hpp>
 
 namespace titop::passes {
 
@@ -300,8 +301,7 @@ Amount Lowering::amount(const Origin& origin) {
 std::vector<Term> Lowering::written_out(Origin& origin) {
   met.clear();
   std::vector<Term> result = merged(amount(origin));
-  std::sort(met.begin(), met.end());
-  met.erase(std::unique(met.begin(), met.end()), met.end());
+  detail::keep_each_once(met);
   origin.parameters = met;
   return result;
 }
