@@ -6,6 +6,7 @@
 #include <numbers>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/rotation.hpp>
 
 namespace titop {
@@ -51,7 +52,7 @@ namespace {
 
 void check_rotation(const Matrix3d& T) {
   const double off = (T.transpose() * T - Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(off <= 1e-9))  // also catches not-a-number
+  if (!(off <= linalg::kOrthonormal))  // also catches not-a-number
     throw Error(Code::not_a_rotation,
                 fmt::format("the matrix is not orthogonal: T'T differs from I by {:.2g}", off),
                 "its columns must be the unit vectors of frame a in frame b; at most 1e-9 may be "

@@ -9,6 +9,7 @@
 #include <titop/analysis/certify/reciprocity.hpp>
 #include <titop/analysis/certify/reversed_momenta.hpp>
 #include <titop/analysis/certify/structure.hpp>
+#include <titop/compiler/certificate/residual.hpp>
 #include <titop/compiler/certificate/without_rounding.hpp>
 #include <titop/compiler/definition/compare.hpp>
 #include <titop/compiler/definition/transfer.hpp>
@@ -125,7 +126,7 @@ void check_dense(const System& system, const detail::Rounded& before,
   detail::add_rounding(measure, factored, detail::of_nothing(terms, factored));
   detail::Difference found =
       detail::difference(dense, factored, measure, detail::data_of(system), points);
-  if (found.relative > detail::kClose) {
+  if (found.relative > detail::kWarn) {
     detail::add_rounding(
         measure, factored,
         detail::terms_of_rounding(before.model, before.rounding, detail::some_of(points)));
@@ -152,7 +153,7 @@ void check_written(const System& system, const Full& subject, const std::vector<
         detail::difference(written, factored, measure, detail::data_of(system), points);
     // At some points one order of sums may hit a 0 and the other not: all of them, if need be.
     for (const auto& at : {detail::some_of(points), points}) {
-      if (!(found.relative > detail::kClose)) break;
+      if (!(found.relative > detail::kWarn)) break;
       detail::add_rounding(measure, factored, as_declared(g, detail::terms(g, at, values)));
       found = detail::difference(written, factored, measure);
     }
@@ -191,7 +192,7 @@ void check_pairs(const System& system, const Options& options, std::vector<Compl
         certification::check_reciprocity(system, pairs, transfers, not_reciprocal, values);
   };
   check();
-  if (c.passivity.least >= -certification::kPassive && c.reciprocity.asymmetry <= detail::kClose)
+  if (c.passivity.least >= -certification::kPassive && c.reciprocity.asymmetry <= detail::kWarn)
     return;
   transfers = certification::with_rounding(system, pairs, std::move(transfers));
   check();

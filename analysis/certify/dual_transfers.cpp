@@ -3,20 +3,14 @@
 #include <titop/compiler/system/elimination_terms.hpp>
 
 namespace titop::certification {
-namespace {
 
 using Eigen::MatrixXd;
-
-/// Of the terms that cancel, as compiler/definition/compare.cpp has it.
-constexpr double kOfRounding = 1e-3;
-
-}  // namespace
 
 double DualTransfers::floor(Eigen::Index row, Eigen::Index column, Eigen::Index rows,
                             Eigen::Index columns) const {
   if (by.terms.size() == 0) return 0;
-  return kOfRounding * std::max(by.terms.block(row, column, rows, columns).maxCoeff(),
-                                by.terms.block(column, row, columns, rows).maxCoeff());
+  return detail::kOfTerms * std::max(by.terms.block(row, column, rows, columns).maxCoeff(),
+                                     by.terms.block(column, row, columns, rows).maxCoeff());
 }
 
 DualTransfers dual_transfers(const passes::DualPairs& pairs,

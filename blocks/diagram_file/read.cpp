@@ -7,6 +7,7 @@
 #include <titop/blocks/diagram_file/diagram_file.hpp>
 #include <titop/blocks/diagram_file/json.hpp>
 #include <titop/blocks/fe/text_file.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <type_traits>
 
 namespace titop {
@@ -139,7 +140,7 @@ class DiagramReader {
   static Part read_part(const JsonPlace& p) {
     p.only({"part", "rows"});
     const Eigen::MatrixXd rows = p.at("rows").matrix(-1, -1);
-    if (rows.rows() == 0 || !(rows * rows.transpose()).isIdentity(1e-9))
+    if (rows.rows() == 0 || !(rows * rows.transpose()).isIdentity(linalg::kOrthonormal))
       p.at("rows").refuse("orthonormal rows, at least one");
     return {rows, p.at("part").text()};
   }

@@ -49,7 +49,7 @@ struct Certificate {
   /// share a column. Outputs likewise; an output at rounding level, or at 1e-14 of its row and
   /// column (a 0 after a rotation of frames), is measured relative to its neighbours. Independent
   /// of the units of inputs and outputs; in other units of states and time other entries are
-  /// rounded. Above 1e-9 and up to 100 states it is at most 30 times the error of the model's own
+  /// rounded. Above 1e-9 and up to 100 states it is at most 32 times the error of the model's own
   /// outputs, as the residual itself is rounded at a point of very small mass. Negative in a
   /// certificate of the factors alone, if the model has no inputs or no outputs, and if
   /// the factors have no digit at any s. Above 1e-9 dense_log() warns, with output and input (up to

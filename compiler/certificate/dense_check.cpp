@@ -4,6 +4,7 @@
 #include <optional>
 #include <titop/compiler/certificate/dense_check.hpp>
 #include <titop/compiler/certificate/residual.hpp>
+#include <titop/compiler/certificate/sampled.hpp>
 #include <titop/compiler/certificate/surroundings.hpp>
 #include <titop/compiler/certificate/tried_points.hpp>
 #include <titop/compiler/definition/compare.hpp>
@@ -187,18 +188,17 @@ void find_rounding(Sample& p, const Factored& d, const solve::RowMatrix<T>& u,
 }
 
 constexpr Index kAnsweredUpTo = 100;  ///< states
-constexpr double kLuck = 30;          ///< by which one answer may be closer than it should be
 
 /// The estimate itself may round at a point of very small mass: the residual is multiplied by 1e24
-/// and cancels again. The dense model's own transfer gives an upper bound, with a safety factor
-/// kLuck.
+/// and cancels again. The dense model's own transfer gives an upper bound, with a factor
+/// for one answer that is closer by chance than it should be.
 void bound_by_answer(Sample& p, const StateSpace& m, const solve::RowMatrix<T>& u,
                      const std::vector<int>& units) {
   if (m.order() == 0) return;  // the difference is that of D
   const linalg::Solution x = linalg::solve(
       p.s * Eigen::MatrixXcd::Identity(m.order(), m.order()) - m.A, Eigen::MatrixXcd(m.B * u));
   if (!(x.rcond > 0) || !x.z.allFinite()) return;
-  p.off = p.off.cwiseMin(kLuck * by_unit(m.C * x.z + m.D * u - p.y, units));
+  p.off = p.off.cwiseMin(kRoundingFactor * by_unit(m.C * x.z + m.D * u - p.y, units));
 }
 
 /// The largest error relative to the output's own size. An output at rounding level (0 by symmetry)

@@ -17,7 +17,6 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
-constexpr double kCancelled = 1e-3;  ///< of the terms
 /// Floor of sizes, relative to neighbours: a 0 in 32 digits may be 1e-26, which is then 1e-8 of
 /// this, the limit; in double it is 1e-17.
 constexpr double kFinest = 1e-18;
@@ -43,7 +42,7 @@ MatrixXd largest(const std::vector<MatrixXcd>& list) {
 
 MatrixXd block_sizes(const std::vector<MatrixXcd>& exact, const Measure& by) {
   const MatrixXd size = by_block(largest(exact), by);
-  return by.terms.size() > 0 ? size.cwiseMax(kCancelled * by_block(by.terms, by)) : size;
+  return by.terms.size() > 0 ? size.cwiseMax(kOfTerms * by_block(by.terms, by)) : size;
 }
 
 template <class List>

@@ -9,8 +9,10 @@
 
 namespace titop::detail {
 
-/// Factor on rounding: differences below it may be rounding alone.
-inline constexpr double kNoise = 1e3;
+using linalg::kNoise;
+
+/// Of cancelling terms: the size of an entry that is smaller.
+inline constexpr double kOfTerms = 1e-3;
 /// Floor of a zero entry, relative to its neighbours: in one order of summation the terms of a 0
 /// cancel exactly, in another to 1e-17.
 inline constexpr double kHitBy = 1e-3;
@@ -84,8 +86,6 @@ struct Difference {
 /// A smaller change of a transfer, of each entry, is none: a simpler model with it may replace the
 /// other.
 inline constexpr double kUnchanged = 1e-8;
-/// Above it a difference may be rounding of terms that a dense model does not show.
-inline constexpr double kClose = 1e-9;
 
 /// Two transfers at the same points: each entry's difference over the size of its block. That is
 /// the largest value of the block in `exact`, or 1e-3 of its terms if these are larger and cancel,

@@ -12,8 +12,6 @@ using Eigen::RowVectorXd;
 using linalg::at;
 using solve::CancellingSum;
 
-constexpr double kKeeps = 1e-3;  ///< of the largest: a choice made before may cost three digits
-
 /// Sums of many numbers, entry by entry.
 struct KeptRow {
   std::vector<CancellingSum> entries;
@@ -113,7 +111,7 @@ int Followers::choose(const Hidden& c) const {
     if (before_[at(i)] && size > linalg::kTie * largest_before)
       largest_before = size, best_before = i;
   }
-  return largest_before >= kKeeps * largest ? best_before : best;
+  return largest_before >= loops::kGoodPivot * largest ? best_before : best;
 }
 
 void Followers::follow(int state, const Hidden& c) {

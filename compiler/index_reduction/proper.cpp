@@ -21,10 +21,6 @@ using solve::RowMatrix;
 /// The largest of several samples estimates rounding: of four, hardly all are small.
 constexpr int kSamples = 4;
 
-/// Coefficients below this multiple of their own rounding are 0. Measured: up to 6 for true zeros,
-/// 1e5 and more for scenes with a derivative.
-constexpr double kRoundings = 1e3;
-
 /// Coefficients with x = T xi + sum of R_j u^(j): y = ... + P_j u^(j).
 struct Expansion {
   std::vector<MatrixXd> R;       ///< blocks' states x inputs
@@ -128,7 +124,7 @@ void refuse_derivatives(const Skeleton& k, const Factored& d, const InputDerivat
   const std::vector<MatrixXd> rounding = rounding_of(d, v, e);
   const auto derivatives = [&](Index i, Index j) {
     for (std::size_t n = e.P.size(); n-- > 1;)
-      if (std::abs(e.P[n](i, j)) > kRoundings * rounding[n](i, j)) return n;
+      if (std::abs(e.P[n](i, j)) > linalg::kNoise * rounding[n](i, j)) return n;
     return std::size_t{0};
   };
   std::vector<Mistake> mistakes;  // the first scalar pair of each input and output

@@ -1,13 +1,13 @@
 #include <Eigen/Geometry>
 #include <titop/compiler/loops/common_rotation.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::loops {
 namespace {
 
 using Eigen::MatrixXd;
-
-constexpr double kOrthonormal = 1e-9;  ///< as of a Rotation
+using linalg::kOrthonormal;
 
 bool is_rotation(const Matrix3d& Q) {
   return Q.determinant() > 0 && (Q.transpose() * Q - Matrix3d::Identity()).norm() <= kOrthonormal;

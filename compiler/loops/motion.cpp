@@ -9,6 +9,7 @@
 #include <titop/graph/drives.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <utility>
 
 namespace titop::loops {
@@ -20,7 +21,8 @@ using linalg::at;
 
 bool has_orthonormal_rows(const MatrixXd& m) {
   return m.rows() <= m.cols() &&
-         (m * m.transpose() - MatrixXd::Identity(m.rows(), m.rows())).cwiseAbs().maxCoeff() <= 1e-9;
+         (m * m.transpose() - MatrixXd::Identity(m.rows(), m.rows())).cwiseAbs().maxCoeff() <=
+             linalg::kOrthonormal;
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include <titop/compiler/certificate/residual.hpp>
 #include <titop/compiler/system/elimination_terms.hpp>
 #include <titop/compiler/system/system_data.hpp>
 #include <titop/compiler/system/transfer_part.hpp>
@@ -25,7 +26,7 @@ Difference difference(const std::vector<MatrixXcd>& a, const std::vector<MatrixX
                       Measure& measure, const SystemData& d,
                       const std::vector<std::complex<double>>& points) {
   const Difference first = difference(a, exact, measure);
-  if (first.relative <= kClose) return first;
+  if (first.relative <= kWarn) return first;
   add_rounding(measure, exact, terms(d, some_of(points)));
   return difference(a, exact, measure);
 }

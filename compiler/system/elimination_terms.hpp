@@ -14,7 +14,7 @@ Eigen::MatrixXd terms(const SystemData& data, const std::vector<std::complex<dou
 
 /// Largest difference between the transfers `a` and `exact` at these points, in the blocks of
 /// `measure` (compiler/definition/compare.hpp). `exact` are the system's own transfers. If it
-/// exceeds kClose, the terms of the elimination at up to 8 of the points are added to `measure`,
+/// exceeds kWarn, the terms of the elimination at up to 8 of the points are added to `measure`,
 /// and the difference is computed again.
 Difference difference(const std::vector<Eigen::MatrixXcd>& a,
                       const std::vector<Eigen::MatrixXcd>& exact, Measure& measure,

@@ -5,6 +5,7 @@
 #include <titop/compiler/passes/moves_points.hpp>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/solve/data_digits.hpp>
+#include <titop/compiler/solve/evaluate.hpp>
 #include <titop/compiler/solve/margins.hpp>
 #include <titop/compiler/solve/weak_pivot.hpp>
 #include <titop/compiler/system/system_data.hpp>
@@ -320,8 +321,7 @@ std::shared_ptr<const SystemData> updated(const SystemData& old,
                           old.changed_loops.end());
   keep_each_once(d->changed_loops);
   // A pivot about as weak as before (within a digit) has been judged then.
-  constexpr double kWeaker = 0.1;
-  if (health.weakest < std::min(kFewDigits, kWeaker * old.scaled_health.weakest)) {
+  if (health.weakest < std::min(kFewDigits, kOneDigit * old.scaled_health.weakest)) {
     update_margins(*d);
     d->weak_pivots = judge_weak_pivots(*d, *d->margins);
     if (d->weak_pivots->least > 0) return again(kNoDigit);

@@ -21,6 +21,11 @@ inline constexpr double kAxisRounding = 1e-12;
 /// Numbers read from a text file have some six digits: a motion of a point below this share of its
 /// others is 0.
 inline constexpr double kTextDigits = 1e-6;
+/// Times one sample of rounding, which may be small by chance: a smaller number may be rounding
+/// alone. Measured: up to 6 for true zeros, 1e5 and more for others.
+inline constexpr double kNoise = 1e3;
+/// Rows of unit vectors, as of a rotation, are off by less: typed numbers of nine digits.
+inline constexpr double kOrthonormal = 1e-9;
 /// A number is larger than another beyond rounding: otherwise the first in the graph is taken, so
 /// that a choice does not depend on the last bits.
 inline constexpr double kTie = 1 + 1e-9;
