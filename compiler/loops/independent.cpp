@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <deque>
 #include <numeric>
 #include <queue>
 #include <titop/compiler/loops/reflections.hpp>
@@ -47,8 +46,6 @@ struct Fronts {
   std::vector<RowBlock> fronts;
   Uses uses;
   std::vector<std::vector<int>> fronts_of;  ///< per column; some may have lost it
-  std::deque<int> queue = {};
-  std::vector<char> queued = std::vector<char>(fronts.size(), 0);
   std::vector<PivotRows> pivot_rows = {};
   Independent result = {};
 
@@ -57,21 +54,13 @@ struct Fronts {
         soft(std::move(worth)),
         preferred(role.size(), 0),
         fronts(std::move(r.blocks)),
-        uses(static_cast<int>(role.size())),
+        uses(role.size(), fronts.size()),
         fronts_of(role.size()) {
     for (const int c : wanted) preferred[at(c)] = 1;
     for (int f = 0; f < static_cast<int>(fronts.size()); ++f) {
       for (const int c : fronts[at(f)].columns) uses.add(c, f), fronts_of[at(c)].push_back(f);
-      push(f);
+      uses.wait(f);
     }
-  }
-
-  void push(int front) {
-    if (!std::exchange(queued[at(front)], 1)) queue.push_back(front);
-  }
-  void leave(int column, int front) {
-    uses.remove(column, front);
-    if (uses.alone(column)) push(uses.block(column));
   }
 
   /// Places of the columns of this front only, for which `asked` is true.
@@ -198,7 +187,7 @@ struct Fronts {
     for (int i = 0; i < static_cast<int>(front.columns.size()); ++i) {
       const int c = front.columns[at(i)];
       if (rows.col(i).norm() <= (uses.alone(c) ? kNothing : 0))
-        leave(c, f);
+        uses.leave(c, f);
       else
         places.push_back(i), left.columns.push_back(c);
     }
@@ -207,7 +196,7 @@ struct Fronts {
     // other fronts.
     const bool fewer = rows.rows() > 0 && left.columns.size() < front.columns.size();
     front = std::move(left);
-    if (fewer && (!no_unknowns || all_own(front))) push(f);
+    if (fewer && (!no_unknowns || all_own(front))) uses.wait(f);
   }
 
   void eliminate(int f) {
@@ -269,7 +258,7 @@ struct Fronts {
     }
     b = {};
     a = std::move(both);
-    push(f);
+    uses.wait(f);
   }
 
   void run() {
@@ -278,10 +267,7 @@ struct Fronts {
     for (int f = 0; f < static_cast<int>(fronts.size()); ++f)
       smallest.emplace(fronts[at(f)].columns.size(), f);
     while (true) {
-      while (!queue.empty()) {
-        const int f = queue.front();
-        queue.pop_front();
-        queued[at(f)] = 0;
+      for (int f = uses.next(); f >= 0; f = uses.next()) {
         eliminate(f);
         smallest.emplace(fronts[at(f)].columns.size(), f);
       }

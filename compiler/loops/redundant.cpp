@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <deque>
 #include <iterator>
 #include <map>
 #include <titop/compiler/loops/redundant.hpp>
@@ -20,8 +19,7 @@ using Eigen::VectorXd;
 using linalg::at;
 using linalg::kProductRounding;
 
-constexpr int kFewColumns = 6;   ///< fewer count as so many
-constexpr double kMostly = 0.5;  ///< less of a unit vector in the span: no need to look closely
+constexpr int kFewColumns = 6;  ///< fewer count as so many
 
 /// Rows, with the columns that no later part has (`own`): in these the rows span the columns of
 /// `basis`, and the rows are `factor` basis'.
@@ -70,32 +68,19 @@ struct RedundancyFinder {
   std::vector<RowBlock> blocks;
   std::vector<MatrixXd> directions = {};  ///< per block: the rows left, in its own rows
   Uses uses;
-  std::deque<int> queue = {};
-  std::vector<char> queued;
   std::vector<RedundantPart> parts = {};
   std::vector<int> part_of;  ///< per column: the part that has it as its own, -1: none
   Redundancy result = {};
 
   explicit RedundancyFinder(const Relations& r)
-      : blocks(r.blocks),
-        uses(static_cast<int>(r.role.size())),
-        queued(blocks.size(), 0),
-        part_of(r.role.size(), -1) {
+      : blocks(r.blocks), uses(r.role.size(), blocks.size()), part_of(r.role.size(), -1) {
     result.blocks.resize(blocks.size());
     for (int b = 0; b < static_cast<int>(blocks.size()); ++b) {
       const Index rows = blocks[at(b)].M.rows();
       directions.emplace_back(MatrixXd::Identity(rows, rows));
       for (const int c : blocks[at(b)].columns) uses.add(c, b);
-      push(b);
+      uses.wait(b);
     }
-  }
-
-  void push(int block) {
-    if (!std::exchange(queued[at(block)], 1)) queue.push_back(block);
-  }
-  void leave(int column, int block) {
-    uses.remove(column, block);
-    if (uses.alone(column)) push(uses.block(column));
   }
 
   /// Sets rows aside that have pivots in columns of their own.
@@ -114,7 +99,7 @@ struct RedundancyFinder {
     const std::vector<int> before = block.columns;
     block = rest(before, e, alone);
     for (const int c : before)
-      if (!std::binary_search(block.columns.begin(), block.columns.end(), c)) leave(c, b);
+      if (!std::binary_search(block.columns.begin(), block.columns.end(), c)) uses.leave(c, b);
   }
 
   template <class Asked>
@@ -217,7 +202,7 @@ struct RedundancyFinder {
     const RedundantPart& part = parts[at(own)];
     const auto place =
         std::lower_bound(part.own.begin(), part.own.end(), column) - part.own.begin();
-    if (part.basis.row(place).squaredNorm() < kMostly) return false;
+    if (2 * part.basis.row(place).squaredNorm() < 1) return false;  // far outside, at less cost
     if (part.outside(VectorXd::Unit(part.basis.rows(), place)) > part.rounding()) return false;
     std::map<int, double> left;  // of the rows in other columns
     const double size = subtract(part, VectorXd::Unit(part.basis.rows(), place), left);
@@ -261,12 +246,7 @@ struct RedundancyFinder {
   }
 
   void run() {
-    while (!queue.empty()) {
-      const int b = queue.front();
-      queue.pop_front();
-      queued[at(b)] = 0;
-      set_aside(b);
-    }
+    for (int b = uses.next(); b >= 0; b = uses.next()) set_aside(b);
     decide_rest();
     for (int c = 0; c < static_cast<int>(part_of.size()); ++c)
       if (held(c)) result.held.push_back(c);
