@@ -64,8 +64,7 @@ MatrixXd System::static_gain() const {
 
 const detail::DenseModel& System::dense() const {
   require_state_space(data_->graph());
-  std::call_once(data_->dense_once, [&] { data_->dense = detail::dense_model(*data_); });
-  return data_->dense;
+  return data_->dense.get([&] { return detail::dense_model(*data_); });
 }
 
 const StateSpace& System::state_space() const& { return dense().model; }
@@ -154,19 +153,18 @@ std::string System::log() const {
 
 const std::vector<Note>& System::dense_notes() const& {
   const detail::DenseModel& m = dense();
-  std::call_once(data_->dense_notes_once, [&] {
-    std::vector<Note>& all = data_->all_dense_notes = m.notes;
-    if (!m.order.judged || !detail::has_damped_bodies(*data_)) return;
-    try {
-      const std::vector<Note> more = detail::damping_notes(poles());
-      all.insert(all.end(), more.begin(), more.end());
-    } catch (const Error&) {
-      all.push_back(
-          {Note::Kind::unchecked, "dense",
-           "the damping of modes is not compared with that of bodies: no poles are found"});
-    }
+  return data_->all_dense_notes.get([&] {
+    std::vector<Note> all = m.notes;
+    if (m.order.judged && detail::has_damped_bodies(*data_)) try {
+        const std::vector<Note> more = detail::damping_notes(poles());
+        all.insert(all.end(), more.begin(), more.end());
+      } catch (const Error&) {
+        all.push_back(
+            {Note::Kind::unchecked, "dense",
+             "the damping of modes is not compared with that of bodies: no poles are found"});
+      }
+    return all;
   });
-  return data_->all_dense_notes;
 }
 
 std::string System::dense_log() const { return lines_of(dense_notes()); }
@@ -194,16 +192,15 @@ System compile(const Diagram& diagram, const Options& options) {
 const detail::SystemData& detail::data_of(const System& system) { return *system.data_; }
 
 const detail::Check& detail::SystemData::checked() const {
-  std::call_once(check_once, [&] { check = certify(*this); });
-  return check;
+  return check.get([&] { return certify(*this); });
 }
 
 const std::vector<Note>& detail::SystemData::noted() const {
-  std::call_once(notes_once, [&] {
-    all_notes = notes;
-    all_notes.insert(all_notes.end(), checked().notes.begin(), checked().notes.end());
+  return all_notes.get([&] {
+    std::vector<Note> all = notes;
+    all.insert(all.end(), checked().notes.begin(), checked().notes.end());
+    return all;
   });
-  return all_notes;
 }
 
 }  // namespace titop

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <span>
 #include <titop/compiler/certificate/check.hpp>
 #include <titop/compiler/solve/factored.hpp>
 #include <titop/compiler/system/dense_model.hpp>
+#include <titop/graph/support/once.hpp>
 
 /// The data behind a System. For the library's own files only.
 namespace titop::detail {
@@ -15,17 +15,9 @@ std::vector<Dependents> find_dependents(const Stage& stage, const solve::JointSy
 
 /// Data of a System: the factors, and results that are computed at their first use.
 struct SystemData : Factored {
-  mutable std::once_flag check_once;
-  mutable Check check;
-
-  mutable std::once_flag notes_once;
-  mutable std::vector<Note> all_notes;
-
-  mutable std::once_flag dense_once;
-  mutable DenseModel dense;
-
-  mutable std::once_flag dense_notes_once;
-  mutable std::vector<Note> all_dense_notes;
+  Once<Check> check;
+  Once<std::vector<Note>> all_notes, all_dense_notes;
+  Once<DenseModel> dense;
 
   /// The certificate: computed by `compile`; of an updated system at the first call.
   const Check& checked() const;
