@@ -34,7 +34,9 @@ struct F06File {
 };
 
 /// Tables of one subcase, over any number of pages, with titles of any text. Eigenvalues before the
-/// augmentation by residual vectors are skipped, as are scalar points and all other tables.
+/// augmentation by residual vectors are skipped, as are scalar points and all other tables. The
+/// layout of MEFFMASS, with its A-SET RIGID BODY MASS MATRIX, is that of files of NX Nastran 10.2
+/// and MSC Nastran 2018.
 ///
 /// Throws bad_file, all mistakes together, with file and line: a row that does not fit its table, a
 /// grid twice in a mode or missing in one, eigenvectors and forces of modes that the eigenvalues do

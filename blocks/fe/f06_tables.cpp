@@ -133,8 +133,9 @@ class F06Reader {
   }
 
   /// "REFERENCE POINT AT ORIGIN OF BASIC COORDINATE SYSTEM", "... AT GRID 12", and for weights
-  /// "REFERENCE POINT =        0".
+  /// "REFERENCE POINT =        0", as tables of WEIGHTCHECK have it, too.
   void reference(const TextLine& line, const Tokens& found) {
+    if (table_ != TableKind::weight_head && !contains(line.text, "REFERENCE POINT AT")) return;
     int grid = 0;
     if (!contains(line.text, "ORIGIN") && (!parse(found.back(), grid) || grid < 0))
       mistake(line, "a grid's number, or the origin");

@@ -39,7 +39,8 @@ std::string cantilever() {
   const MatrixXd L = fe::find_matrix(op2.matrices, "MPFACS").value;
   F06Writer w;
   w.eigenvalues(modes.omega, 0, 3);
-  w.rigid(fe::find_matrix(op2.matrices, "RBMASSS").value, "AT GRID        1");
+  w.rigid(fe::find_matrix(op2.matrices, "RBMASSS").value, L * L.transpose(), "AT GRID        1");
+  w.fractions(modes.omega);
   w.by_mode("MODAL PARTICIPATION FACTORS", modes.omega, L);
   w.by_mode("MODAL EFFECTIVE MASS", modes.omega, L.cwiseAbs2());
   for (int k = 0; k < 3; ++k) {
@@ -82,7 +83,8 @@ struct TipMass {
   /// Variations of the printed tables.
   struct Print {
     bool vectors = true, forces = true, factors = true, rigid = true, weight = false;
-    double share = 1;  ///< of the forces that grid 7 takes
+    bool check = false;  ///< WEIGHTCHECK, about grid 9
+    double share = 1;    ///< of the forces that grid 7 takes
     double mass = 1, effective = 1;
     double wtmass = 1;
   };
@@ -99,12 +101,14 @@ struct TipMass {
     if (print.weight) w.weight(about(Vector3d::Zero()) / print.wtmass, 0);
     w.eigenvalues(3 * omega, 0, 2, "            (BEFORE AUGMENTATION OF RESIDUAL VECTORS)\n");
     w.eigenvalues(omega, 0, 1), w.eigenvalues(omega, 1, 2);  // on two pages
-    if (print.rigid) w.rigid(about(Vector3d::Zero()), "AT ORIGIN OF BASIC COORDINATE SYSTEM");
+    if (print.check) w.weight_check(about({5, 2, 3}), 9);
     const MatrixXd L = tau(-P).transpose() * factors;
+    if (print.rigid)
+      w.rigid(about(Vector3d::Zero()), L * L.transpose(), "AT ORIGIN OF BASIC COORDINATE SYSTEM");
     if (print.factors) w.by_mode("MODAL PARTICIPATION FACTORS", omega, L);
     w.by_mode("MODAL EFFECTIVE MASS", omega, print.effective * L.cwiseAbs2());
     w.by_mode("MODAL EFFECTIVE WEIGHT", omega, 9.81 * L.cwiseAbs2());
-    w.by_mode("MODAL EFFECTIVE MASS FRACTION", omega, L.cwiseAbs2());
+    w.fractions(omega);
     for (int k = 0; k < 2 && print.vectors; ++k) {
       w.vector(omega(k), k + 1, {{7, Vector6::Zero()}});
       w.vector(omega(k), k + 1, {{9, in_own_frame(shapes.col(k))}});  // on the next page
@@ -168,6 +172,35 @@ TEST_CASE("without the a-set's mass that of the weight generator, about its own 
   check_refused([&] { read(right.f06({.wtmass = -1})); }, Code::bad_file, {"WTMASS", "-1"});
 }
 
+TEST_CASE("tables of WEIGHTCHECK about another grid change nothing") {
+  const TipMass right;
+  for (const bool rigid : {true, false}) {
+    const fe::F06File file = read(right.f06({.rigid = rigid, .weight = !rigid, .check = true}));
+    CHECK(file.about == 0);
+    const ModalData data = fe::f06_modal_data(file, fe::f06_grids(file), "7", {"9"});
+    CHECK((data.L_P.transpose() - right.factors).cwiseAbs().maxCoeff() <= kPrinted * 20);
+    CHECK((data.D_P - right.D).cwiseAbs().maxCoeff() <= kPrinted * 100);
+  }
+}
+
+TEST_CASE("modes above fifty are on pages without the title of their table") {
+  const Eigen::Index n = 120;
+  const VectorXd omega = VectorXd::LinSpaced(n, 1, 2);
+  const MatrixXd L = VectorXd::LinSpaced(6, 1, 2) * omega.transpose();
+  F06Writer w;
+  w.eigenvalues(omega, 0, n);
+  w.rigid(Matrix6::Identity(), Matrix6::Identity(), "AT ORIGIN OF BASIC COORDINATE SYSTEM");
+  w.fractions(omega);
+  w.by_mode("MODAL PARTICIPATION FACTORS", omega, L);
+  w.by_mode("MODAL EFFECTIVE MASS", omega, L.cwiseAbs2());
+  const fe::F06File file = read(w.text);
+  REQUIRE(file.factors);
+  REQUIRE(file.effective);
+  REQUIRE(file.factors->cols() == n);
+  CHECK((*file.factors - L).cwiseAbs().maxCoeff() <= kPrinted * 4);
+  CHECK((*file.effective - L.cwiseAbs2()).cwiseAbs().maxCoeff() <= kPrinted * 16);
+}
+
 TEST_CASE("a missing table is named, with the case control that prints it") {
   const TipMass right;
   const auto refused = [&](const TipMass::Print& print,
@@ -215,7 +248,7 @@ TEST_CASE("broken tables are refused with their line") {
   refused("             9      G ", "             7      G ", {"m.f06:", "once"});
   refused("EIGENVALUE =  7.500000E-01\n                    F O", "EIGENVALUE =  7.6E-01\n F O",
           {"7.600000e-01", "eigenvalue"});
-  refused("*  2.000000E+00", "*  2.00000X", {"m.f06:52", "rigid mass"});
+  refused("*  2.000000E+00", "*  2.00000X", {"m.f06:72", "rigid mass"});
   check_refused([&] { read(good + " *** USER FATAL MESSAGE 9050 (SEKRRS)\n"); }, Code::bad_file,
                 {"m.f06:", "FATAL MESSAGE 9050"});
   check_refused([&] { read(good + good.substr(good.find("1    WING"))); }, Code::bad_file,

@@ -8,7 +8,9 @@
 #include <vector>
 
 /// Tables as Nastran prints them: the first column controls the printer, pages have three lines of
-/// titles, numbers seven digits.
+/// titles, numbers seven digits. The tables of MEFFMASS and WEIGHTCHECK are laid out as in two
+/// files of others: NX Nastran 10.2 (github.com/misams/f06ModalReader, SOL103_multiple_of_50.f06)
+/// and MSC Nastran 2018.0.1 (github.com/ymnpy/modal_contribution, basic.f06).
 namespace fe_test {
 
 inline std::string printed(double value) {
@@ -60,32 +62,64 @@ class F06Writer {
         omega * omega);
     grid_rows(rows);
   }
-  /// 6 x N, each mode a row.
+  /// 6 x N, each mode a row, fifty on a page; the title stands on the first one.
   void by_mode(const std::string& title, const Eigen::VectorXd& omega,
                const Eigen::MatrixXd& values) {
-    page();
-    text += fmt::format(
-        "0{:>80}\n   MODE     FREQUENCY            T1                T2                T3          "
-        " "
-        "     R1                R2                R3\n    NO.\n",
-        title);
     for (Eigen::Index k = 0; k < omega.size(); ++k) {
-      text += fmt::format("{:9}   {:13.6E}    ", k + 1, omega(k) / (2 * EIGEN_PI));
-      for (Eigen::Index c = 0; c < 6; ++c) text += fmt::format("{:13.6E}     ", values(c, k));
+      if (k % 50 == 0) {
+        page();
+        text += k == 0 ? fmt::format("\n{:>80}\n\n", title) : "\n";
+        text += "    MODE     FREQUENCY  ";
+        for (const char* component : {"T1", "T2", "T3", "R1", "R2", "R3"})
+          text += fmt::format("{:>14}    ", component);
+        text += "\n     NO.\n\n";
+      }
+      text += fmt::format("{:8}{:16.6E}", k + 1, omega(k) / (2 * EIGEN_PI));
+      for (Eigen::Index c = 0; c < 6; ++c) text += fmt::format("{:18.6E}", values(c, k));
       text += "\n";
+    }
+    text += "\n                  TOTAL ";
+    for (const double sum : values.rowwise().sum()) text += fmt::format("{:18.6E}", sum);
+    text += "\n\n\n";
+  }
+  /// Fraction and sum of the translations of each mode, then of the rotations.
+  void fractions(const Eigen::VectorXd& omega) {
+    for (const char* of : {"TRANSLATIONAL", "ROTATIONAL"}) {
+      page();
+      text += fmt::format(
+          "\n{:>81}\n{:>72} DEGREES OF FREEDOM)\n\n    MODE    FREQUENCY\n     NO.        "
+          "FRACTION  SUM\n\n",
+          "MODAL EFFECTIVE MASS FRACTION", fmt::format("(FOR {}", of));
+      for (Eigen::Index k = 0; k < omega.size(); ++k)
+        text += fmt::format("{:8}{:16.6E}{}\n", k + 1, omega(k) / (2 * EIGEN_PI),
+                            std::string("      5.000000E-01      1.000000E+00") +
+                                "      5.000000E-01      1.000000E+00      5.000000E-01" +
+                                "      1.000000E+00");
     }
   }
   /// "AT ORIGIN OF BASIC COORDINATE SYSTEM", "AT GRID 4".
-  void rigid(const titop::Matrix6& D, const std::string& about) {
+  void rigid(const titop::Matrix6& D, const titop::Matrix6& effective, const std::string& about) {
     page();
-    text += fmt::format(
-        "0   M O D A L   E F F E C T I V E   M A S S   S U M M A R Y\n      TOTAL EFFECTIVE MASS "
-        "FRACTION\n      REFERENCE POINT {}\n        T1     T2\n  9.480000E-01  1.0\n      A-SET "
-        "RIGID "
-        "BODY MASS MATRIX\n  ***                       ***\n",
-        about);
-    matrix(D);
-    text += "  ***                       ***\n";
+    text += fmt::format("\n{:>94}\n\n\n\n{:>81}\n{:41}REFERENCE POINT {}\n\n\n",
+                        "M O D A L   E F F E C T I V E   M A S S   S U M M A R Y",
+                        "TOTAL EFFECTIVE MASS FRACTION", "", about);
+    text += fmt::format("{:>26}{:>18}\n{:>31}{:>18}\n\n\n\n\n", "T1", "T2", "9.480000E-01",
+                        "1.000000E+00");
+    text += fmt::format("{:>77}   \n", "EFFECTIVE MASS MATRIX");
+    framed(effective);
+    text += fmt::format("\n{:>81}\n", "A-SET RIGID BODY MASS MATRIX");
+    framed(D);
+    text += "\n";
+  }
+  /// Of all degrees of freedom, and of the a-set.
+  void weight_check(const titop::Matrix6& D, int about) {
+    for (const char* set : {"G", "A"}) {
+      page();
+      text += fmt::format("{:>90}\n0{:>81} = {}       \n0{:>68} ={:9}\n{:>67}\n",
+                          "O U T P U T   F R O M   W E I G H T   C H E C K",
+                          "DEGREES OF FREEDOM SET", set, "REFERENCE POINT", about, "M O");
+      matrix(D);
+    }
   }
   void weight(const titop::Matrix6& D, int about) {
     page();
@@ -119,6 +153,11 @@ class F06Writer {
       for (Eigen::Index c = 0; c < 6; ++c) text += "  " + printed(value(c));
       text += "\n";
     }
+  }
+  void framed(const titop::Matrix6& D) {
+    text += fmt::format("{:>26}{:>85}\n", "***", "***");
+    matrix(D);
+    text += fmt::format("{:>26}{:>85}\n", "***", "***");
   }
   void matrix(const titop::Matrix6& D) {
     for (Eigen::Index i = 0; i < 6; ++i) {
