@@ -220,7 +220,7 @@ ModalData f06_modal_data(const F06File& file, const std::vector<Grid>& grids,
   const Vector3d P = detail::find_grid(grids, file.name, parent).position;
   const F06Mass& D = file.rigid ? *file.rigid : *file.weight;
   const Matrix6 to_P = tau(P - reference(file, grids, D.about));
-  const Matrix6 mass = file.rigid ? D.value : Matrix6(file.wtmass * D.value);
+  const Matrix6 mass = (file.rigid ? 1 : file.wtmass) * detail::symmetric_mass(D.value, file.name);
   run.D = to_P.transpose() * mass * to_P;
   run.L = tau(P - reference(file, grids, file.about)).transpose() * *file.factors;
   run.digits = digits_left(mass, run.D, to_P);

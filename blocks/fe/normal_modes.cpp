@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <titop/blocks/fe/modal_checks.hpp>
 #include <titop/blocks/fe/normal_modes.hpp>
 #include <titop/graph/error.hpp>
 
@@ -54,6 +55,8 @@ void require_support(const detail::ClampedRun& run, const Grid& P) {
     }
 }
 
+constexpr double kLastDigit = 1e-6;  ///< a unit of the seventh digit, of an entry's largest value
+
 void require_unit_masses(const detail::ClampedRun& run) {
   for (Index k = 0; k < run.modes.mass.size(); ++k)
     if (!(std::abs(run.modes.mass(k) - 1) <= 1e-5))
@@ -90,6 +93,20 @@ void require_at_rest(const NormalModes& modes, const std::string& file, const Gr
   throw Error(Code::bad_value, fmt::format("{}: grid {} moves in the modes", file, parent.id),
               fmt::format("SPC1 123456 at it, or take the clamped grid; at rest are {}",
                           fmt::join(rest, ", ")));
+}
+
+Matrix6 symmetric_mass(const Matrix6& D, const std::string& file) {
+  for (Index i = 0; i < 6; ++i)
+    for (Index j = 0; j < i; ++j) {
+      const double off = std::abs(D(i, j) - D(j, i));
+      if (off <= kLastDigit * std::sqrt(std::abs(D(i, i) * D(j, j)))) continue;
+      const auto name = [](Index k) { return component_name(static_cast<int>(k)); };
+      throw Error(Code::bad_file,
+                  fmt::format("{}: the rigid mass has {:.6e} for {}, {}, and {:.6e} for {}, {}",
+                              file, D(i, j), name(i), name(j), D(j, i), name(j), name(i)),
+                  "a symmetric matrix: take the file as the program has written it");
+    }
+  return (D + D.transpose()) / 2;
 }
 
 ModalData clamped_modal_data(const ClampedRun& run, const std::string& parent,

@@ -43,6 +43,10 @@ const Grid& find_grid(const std::vector<Grid>& grids, const std::string& file,
 /// Throws bad_value, with the grids at rest, for a parent that moves in the modes.
 void require_at_rest(const NormalModes& modes, const std::string& file, const Grid& parent);
 
+/// A rigid mass matrix as a file has it, each of its entries rounded alone. Throws bad_file if
+/// entries (i, j) and (j, i) differ by more than 1e-6 of sqrt(D_ii D_jj).
+Matrix6 symmetric_mass(const Matrix6& D, const std::string& file);
+
 /// Modal data of the run, with modes of generalised mass 1, undamped. The forces at the parent are
 /// compared with -omega^2 L to 1e-3 of the rigid mass. Throws the errors of `require_at_rest`;
 /// bad_file for generalised masses that differ from 1 by more than 1e-5, and for forces that

@@ -161,7 +161,7 @@ ModalData op2_modal_data(const Op2File& file, const std::string& parent,
                 fmt::format("RBMASSS is {} x {}, MPFACS {} x {}, for {} modes", D.value.rows(),
                             D.value.cols(), L.value.rows(), L.value.cols(), n),
                 "they are 6 x 6 and 6 by the number of modes");
-  run.D = D.value;
+  run.D = detail::symmetric_mass(D.value, file.name);
   run.L = L.value;
   run.forces = values_at_grids(file, "OQG1", kSupportForces, run.modes.numbers);
   return detail::clamped_modal_data(run, parent, children);

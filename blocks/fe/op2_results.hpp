@@ -39,8 +39,9 @@ GridMatrices op2_matrices(const Op2File& file, const std::string& stiffness,
 /// clamped grid. Undamped.
 ///
 /// Throws bad_file for missing tables, with the lines that write them, for generalised masses that
-/// differ from 1 by more than 1e-5, and for support forces that contradict MPFACS; bad_value for a
-/// parent that moves in the modes; unknown_name for grids without position or shapes.
+/// differ from 1 by more than 1e-5, for support forces that contradict MPFACS, and for RBMASSS that
+/// is not symmetric to seven digits; bad_value for a parent that moves in the modes; unknown_name
+/// for grids without position or shapes.
 ModalData op2_modal_data(const Op2File& file, const std::string& parent,
                          const std::vector<std::string>& children);
 

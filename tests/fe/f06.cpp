@@ -83,8 +83,9 @@ struct TipMass {
   /// Variations of the printed tables.
   struct Print {
     bool vectors = true, forces = true, factors = true, rigid = true, weight = false;
-    bool check = false;  ///< WEIGHTCHECK, about grid 9
-    double share = 1;    ///< of the forces that grid 7 takes
+    bool check = false;                  ///< WEIGHTCHECK, about grid 9
+    Matrix6 rounding = Matrix6::Zero();  ///< of the rigid mass
+    double share = 1;                    ///< of the forces that grid 7 takes
     double mass = 1, effective = 1;
     double wtmass = 1;
   };
@@ -104,7 +105,8 @@ struct TipMass {
     if (print.check) w.weight_check(about({5, 2, 3}), 9);
     const MatrixXd L = tau(-P).transpose() * factors;
     if (print.rigid)
-      w.rigid(about(Vector3d::Zero()), L * L.transpose(), "AT ORIGIN OF BASIC COORDINATE SYSTEM");
+      w.rigid(about(Vector3d::Zero()) + print.rounding, L * L.transpose(),
+              "AT ORIGIN OF BASIC COORDINATE SYSTEM");
     if (print.factors) w.by_mode("MODAL PARTICIPATION FACTORS", omega, L);
     w.by_mode("MODAL EFFECTIVE MASS", omega, print.effective * L.cwiseAbs2());
     w.by_mode("MODAL EFFECTIVE WEIGHT", omega, 9.81 * L.cwiseAbs2());
@@ -181,6 +183,19 @@ TEST_CASE("tables of WEIGHTCHECK about another grid change nothing") {
     CHECK((data.L_P.transpose() - right.factors).cwiseAbs().maxCoeff() <= kPrinted * 20);
     CHECK((data.D_P - right.D).cwiseAbs().maxCoeff() <= kPrinted * 100);
   }
+}
+
+TEST_CASE("entries of the rigid mass are rounded alone, and contradict each other by no more") {
+  TipMass::Print print;
+  print.rounding(1, 5) = 1e-5;  // of 10: the seventh digit
+  const fe::F06File file = read(TipMass().f06(print));
+  const ModalData data = fe::f06_modal_data(file, fe::f06_grids(file), "7", {"9"});
+  CHECK(data.D_P == data.D_P.transpose());
+  CHECK((data.D_P - TipMass().D).cwiseAbs().maxCoeff() <= kPrinted * 100);
+  print.rounding(1, 5) = 0.1;
+  const fe::F06File wrong = read(TipMass().f06(print));
+  check_refused([&] { fe::f06_modal_data(wrong, fe::f06_grids(wrong), "7", {}); }, Code::bad_file,
+                {"m.f06", "y, rz", "1.010000e+01", "1.000000e+01"});
 }
 
 TEST_CASE("modes above fifty are on pages without the title of their table") {
