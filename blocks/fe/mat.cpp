@@ -72,6 +72,7 @@ struct Head {
   std::string name = {};
 };
 
+/// Not by libmatio, which allocates by the sizes in a damaged file (bench/programs/mat.cpp).
 class MatReader {
  public:
   explicit MatReader(const TextFile& file) : file_(file) {
