@@ -162,6 +162,14 @@ TEST_CASE("a scalar point with the number of a grid is not that grid") {
   CHECK(found.ports == std::vector<std::string>{"1", "2"});
 }
 
+TEST_CASE("without a parent, positions by statics are from a grid that gives them") {
+  // The first ten grids of the flying wing are soft parts of it.
+  const std::string wing = kData + "/nastran_dmig_flying_wing/sol103_maewing1_femv5p1.pch";
+  const fe::Import found = fe::import_body(wing);
+  CHECK(found.ports.size() == 71);
+  CHECK(has_line(found.text, {"statics", "not rigid by"}));
+}
+
 TEST_CASE("other files are refused with the output to request from the program") {
   check_refused([&] { fe::import_body(kData + "/nastran_cantilever/pn_mwe_s-solution_1.dat"); },
                 Code::bad_file, {"pn_mwe_s-solution_1.dat", "--grids", "EXTSEOUT"});
