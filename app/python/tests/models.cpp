@@ -39,7 +39,9 @@
 #include "scenes/sloshing.hpp"
 #include "scenes/solar_array.hpp"
 #include "scenes/solar_array_drive.hpp"
+#include "scenes/telecom.hpp"
 #include "scenes/wheels.hpp"
+#include "telecom_law.hpp"
 
 namespace reference {
 
@@ -185,6 +187,9 @@ namespace e28 {
 namespace e29 {
 #include "29_exact_beam.cpp"
 }
+namespace e30 {
+#include "30_telecom.cpp"
+}
 namespace demo {
 #include "demo.cpp"
 }
@@ -220,6 +225,7 @@ int main(int, char** arguments) {
                                          {"27_margins", &e27::program, 1},
                                          {"28_solar_array", &e28::program, 2},
                                          {"29_exact_beam", &e29::program, 7},
+                                         {"30_telecom", &e30::program, 4},
                                          {"demo", &demo::program, 2}}) {
     reference::folder = all / name;
     reference::seen.clear();

@@ -118,7 +118,7 @@ class Examples(unittest.TestCase):
                         self.assertEqual(ours.tobytes(), np.asarray(theirs).tobytes())
                     count += 1
         codesign = "20_codesign" in self.results and (self.cpp / "20_codesign").is_dir()
-        self.assertEqual(count, 55 + 3 * codesign)
+        self.assertEqual(count, 59 + 3 * codesign)
 
 
 if __name__ == "__main__":
