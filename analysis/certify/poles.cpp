@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <titop/analysis/certify/poles.hpp>
 #include <titop/compiler/system/system.hpp>
 #include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::certification {
 namespace {
@@ -12,7 +12,6 @@ using Eigen::Index;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
 /// A pole that rounding of A may move by more than this, relative to its size, gives no verdict on
 /// the model.
 constexpr double kMeasurable = 1e-8;
@@ -50,7 +49,7 @@ FoundPoles check_poles(const System& system, const StateSpace& model,
     const std::complex<double> s = e.values(k);
     const double size = std::abs(s);
     const double moved = (e.W.row(k).cwiseAbs() * rounding * e.V.col(k).cwiseAbs())(0);
-    const double rounded = kEps * norm * left(k) * right(k) + moved;
+    const double rounded = linalg::kEpsilon * norm * left(k) * right(k) + moved;
     if (size > 0 && rounded <= 0.1 * size) found.omegas.push_back(size);
     if (!(rounded <= kMeasurable * size)) {
       if (s.real() > 10 * rounded) {  // not measured, but if it is not in doubt
@@ -66,7 +65,7 @@ FoundPoles check_poles(const System& system, const StateSpace& model,
     const double error = change == 0 ? 0 : change / size;  // 0 to the last bit if A is 0
     p.measured += both;
     if (error > p.error) p.error = error, p.where = s;
-    if (s.real() > std::max(1e-9, 10 * error) * size) {
+    if (s.real() > std::max(linalg::kPoleOnAxis, 10 * error) * size) {
       found.right.push_back({s, rounded});
       if (both == 2) found.right.push_back({std::conj(s), rounded});
     }

@@ -6,6 +6,7 @@
 #include <titop/analysis/control/feedback.hpp>
 #include <titop/analysis/control/nyquist.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/support/each_once.hpp>
 
 namespace titop::detail {
@@ -60,9 +61,9 @@ std::vector<double> on_axis(const std::vector<SidedPole>& open) {
   for (const SidedPole& p : open)
     if (p.side == Side::axis && p.s.imag() >= 0) list.push_back(p.s.imag());
   std::sort(list.begin(), list.end());
-  list.erase(
-      std::unique(list.begin(), list.end(), [](double a, double b) { return b - a <= 1e-9 * b; }),
-      list.end());
+  list.erase(std::unique(list.begin(), list.end(),
+                         [](double a, double b) { return b - a <= linalg::kSameFrequency * b; }),
+             list.end());
   return list;
 }
 
@@ -70,7 +71,8 @@ std::vector<double> on_axis(const std::vector<SidedPole>& open) {
 double radius(double omega, const std::vector<Complex>& poles, const LoopResponse& response) {
   double nearest = omega > 0 ? omega : HUGE_VAL;
   for (const Complex& s : poles)
-    if (const double d = std::abs(s - Complex(0, omega)); d > 1e-9 * std::abs(s) && d > 0)
+    if (const double d = std::abs(s - Complex(0, omega));
+        d > linalg::kSameFrequency * std::abs(s) && d > 0)
       nearest = std::min(nearest, d);
   double r = std::isinf(nearest) ? 1 : nearest / 3;
   // Closed-loop poles with a delay are not known: none is where |L| is large.

@@ -10,6 +10,7 @@
 #include <titop/analysis/reduction/small.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/modal_form.hpp>
 
 namespace titop::detail {
@@ -19,8 +20,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kOneFrequency = 1e-9;  ///< relative gap of frequencies that count as one
-constexpr double kInSpan = 1e-7;        ///< remainder of a vector in the span of other ports
+constexpr double kInSpan = 1e-7;  ///< remainder of a vector in the span of other ports
 
 using linalg::at;
 
@@ -119,7 +119,8 @@ std::vector<ModeGroup> groups(const std::vector<Shared>& bodies) {
     std::stable_sort(order.begin(), order.end(), [&](Index i, Index j) { return k(i) < k(j); });
     for (std::size_t i = 0; i < order.size(); ++i) {
       const Index j = order[i];
-      if (i == 0 || k(j) - k(order[i - 1]) > 2 * kOneFrequency * k(j)) list.push_back({b, {}, 0});
+      if (i == 0 || k(j) - k(order[i - 1]) > 2 * linalg::kSameFrequency * k(j))
+        list.push_back({b, {}, 0});
       list.back().modes.push_back(j);
       list.back().effect += bodies[b].corrected(j);
     }

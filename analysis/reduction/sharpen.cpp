@@ -2,6 +2,7 @@
 #include <cmath>
 #include <optional>
 #include <titop/analysis/reduction/sharpen.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/support/parallel.hpp>
 
 namespace titop::detail {
@@ -9,9 +10,6 @@ namespace {
 
 using Complex = std::complex<double>;
 using Eigen::Index;
-
-constexpr double kCluster = 2e-9;  ///< relative gap of lambda that counts as none
-constexpr double kSame = 1e-9;     ///< relative: one damping, up to the last digits
 
 /// The pair with the largest share of a mode.
 struct PortPair {
@@ -69,7 +67,8 @@ PortPair best_pair(const Whole& w, Index j) {
 double distance(const Eigen::VectorXd& lambda, Index elastic, Index j) {
   double nearest = HUGE_VAL;
   for (Index i = 0; i < elastic; ++i)
-    if (const double off = std::abs(lambda(i) - lambda(j)) / lambda(j); off > kCluster)
+    if (const double off = std::abs(lambda(i) - lambda(j)) / lambda(j);
+        off > 2 * linalg::kSameFrequency)
       nearest = std::min(nearest, off);
   return nearest;
 }
@@ -88,7 +87,8 @@ void unite(Whole& w, const Eigen::VectorXd& before, const Eigen::VectorXd& dampi
     if (of == 0) continue;
     w.lambda.segment(first, last - first).setConstant(lambda / of);
     const auto was = damping_before.segment(first, last - first);
-    if (w.Z.size() > 0 && was.maxCoeff() - was.minCoeff() <= kSame * was.maxCoeff())
+    if (w.Z.size() > 0 &&
+        was.maxCoeff() - was.minCoeff() <= linalg::kSameFrequency * was.maxCoeff())
       w.Z.diagonal().segment(first, last - first).setConstant(damping / of);
   }
 }

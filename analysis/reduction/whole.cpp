@@ -8,6 +8,7 @@
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 
 namespace titop::detail {
@@ -17,7 +18,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kEqual = 1e-9;  ///< relative gap of frequencies that count as one
 constexpr double kSeen = 1e-12;  ///< of a port's sensitivity to all modes: less is rounding
 constexpr double kLeak = 3e-9;   ///< the same with closed chains, which have dependent coordinates
 
@@ -75,7 +75,8 @@ void turn_clusters(VectorXd& lambda, MatrixXd& phi, const MatrixXd& b, const Mat
   all << b.colwise().norm(), c.rowwise().norm().transpose();
   for (Index first = 0, last = 0; first < lambda.size(); first = last) {
     last = first + 1;
-    while (last < lambda.size() && lambda(last) - lambda(last - 1) <= 2 * kEqual * lambda(last))
+    while (last < lambda.size() &&
+           lambda(last) - lambda(last - 1) <= 2 * linalg::kSameFrequency * lambda(last))
       ++last;
     if (last - first < 2) continue;
     MatrixXd seen(last - first, b.cols() + c.rows());

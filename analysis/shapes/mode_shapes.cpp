@@ -21,8 +21,6 @@ using Eigen::MatrixXcd;
 using linalg::at;
 
 constexpr const char* kMotion = "motion of ";  ///< outputs that are added
-/// Nearer poles than this, relative to their modulus, are equal: the digits of poles().
-constexpr double kPoleDigits = 1e-9;
 /// A circle leaves a factor of 10 to the poles inside and outside of it. By the trapezoidal rule
 /// with 16 points, which is exact for a power below 16, these change the residue by 10^-16.
 constexpr double kApart = 100;
@@ -94,7 +92,7 @@ double radius_around(Complex s, const std::vector<Pole>& poles) {
     if (p.pair) distances.push_back(std::abs(std::conj(p.s) - s));
   }
   std::sort(distances.begin(), distances.end());
-  double inside = kPoleDigits * std::abs(s);
+  double inside = linalg::kSameFrequency * std::abs(s);
   for (const double d : distances) {
     if (d > kApart * inside) return std::sqrt(inside * d);
     inside = std::max(inside, d);

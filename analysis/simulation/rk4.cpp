@@ -5,6 +5,7 @@
 #include <titop/analysis/simulation/simulate.hpp>
 #include <titop/analysis/simulation/steppers.hpp>
 #include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop {
 namespace {
@@ -55,9 +56,9 @@ double rk4_limit(const System& system) {
   const double largest = poles.cwiseAbs().maxCoeff();
   for (std::complex<double> p : poles) {
     const double size = std::abs(p);
-    if (!(size > 1e-12 * largest) || p.real() > 1e-9 * size) continue;
+    if (!(size > 1e-12 * largest) || p.real() > linalg::kPoleOnAxis * size) continue;
     // On the axis up to rounding: along it the region reaches sqrt(8).
-    if (std::abs(p.real()) <= 1e-9 * size) p = {0, size};
+    if (std::abs(p.real()) <= linalg::kPoleOnAxis * size) p = {0, size};
     limit = std::min(limit, reach(p / size) / size);
   }
   return limit;

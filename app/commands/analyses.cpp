@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <titop/emit/text/csv.hpp>
 #include <titop/emit/text/write_file.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 #include "commands/diagram.hpp"
 #include "commands/ranks.hpp"
@@ -187,9 +188,8 @@ int sweep_of(const Arguments& a, const Ranks& ranks) {
 
 /// A pole right of the axis by more than the rounding of its modulus.
 bool has_unstable_pole(const System& system) {
-  constexpr double kRight = 1e-9;
   for (const Pole& p : system.poles())
-    if (p.s.real() > kRight * p.omega) return true;
+    if (p.s.real() > linalg::kPoleOnAxis * p.omega) return true;
   return false;
 }
 

@@ -49,7 +49,7 @@ void find_clusters(const linalg::Eigensystem& e, const std::vector<std::vector<I
       open.pop_back();
       for (Index j = 0; j < n; ++j) {
         const double same =
-            noise + std::max(kSameFrequency, 2 * resolution) * std::abs(e.values(i));
+            noise + std::max(linalg::kSameFrequency, 2 * resolution) * std::abs(e.values(i));
         if (m.cluster[at(j)] < 0 && std::abs(e.values(i) - e.values(j)) <= same)
           m.cluster[at(j)] = count, open.push_back(j);
       }

@@ -87,7 +87,7 @@ bool meet(const PoleClusters& p, const PoleCluster& a, const PoleCluster& b) {
   for (const Index i : a.poles)
     for (const Index j : b.poles)
       if (std::abs(p.e.values(i) - p.e.values(j)) <=
-          same + kSameFrequency * std::abs(p.e.values(i)))
+          same + linalg::kSameFrequency * std::abs(p.e.values(i)))
         return true;
   return false;
 }

@@ -22,7 +22,7 @@ void find_clusters(GradedModes& e, VectorXd& z, double resolution, ModeSet& m) {
   VectorXd& lambda = e.modes.lambda;
   const Index n = lambda.size();
   // A frequency that differs by 2 * resolution differs by 4 * resolution in its square.
-  const double same = std::max(kSameFrequency, 4 * resolution);
+  const double same = std::max(linalg::kSameFrequency, 4 * resolution);
   m.cluster.assign(at(n), 0);
   for (const auto& [first, count] : equal_frequencies(e, same)) {
     std::vector<Index> order(at(count));
@@ -83,7 +83,7 @@ bool mixes_levels(const GradedModes& e, const VectorXd& z, const CoordinatePorts
   for (Index first = 0, last; first < n; first = last) {
     for (last = first + 1; last < n && m.cluster[at(last)] == m.cluster[at(first)];) ++last;
     const double lambda = e.modes.lambda(first);
-    const bool real = z(first) * z(first) >= 4 * lambda * (1 - kSameFrequency);
+    const bool real = z(first) * z(first) >= 4 * lambda * (1 - linalg::kSameFrequency);
     for (Index k = 0; k < q.cols() && lambda != 0; ++k) {
       const VectorXd a = q.col(k).segment(first, last - first),
                      b = v.col(k).segment(first, last - first);
@@ -108,7 +108,7 @@ bool shares_a_pole(const VectorXd& lambda, const VectorXd& z, const ModeSet& m) 
   std::sort(poles.begin(), poles.end());
   return std::adjacent_find(poles.begin(), poles.end(), [](const auto& a, const auto& b) {
            return a.second != b.second &&
-                  std::abs(b.first - a.first) <= kSameFrequency * std::abs(b.first);
+                  std::abs(b.first - a.first) <= linalg::kSameFrequency * std::abs(b.first);
          }) != poles.end();
 }
 

@@ -11,7 +11,7 @@ using Eigen::VectorXd;
 
 /// Any vectors will do for modes of one frequency: those in which damping does not couple them.
 void turn_by_damping(const MatrixXd& Z, GradedModes& e) {
-  for (const auto& [first, count] : equal_frequencies(e, kSameFrequency)) {
+  for (const auto& [first, count] : equal_frequencies(e, linalg::kSameFrequency)) {
     if (count == 1) continue;
     auto V = e.modes.V.middleCols(first, count);
     const MatrixXd in = V.transpose() * Z * V;

@@ -8,8 +8,6 @@
 
 namespace titop {
 
-inline constexpr double kSameFrequency = 1e-9;  ///< relative: as close as this, modes are equal
-
 /// Modes of a second-order form that damping does not couple: each is an oscillator
 /// eta'' = -z eta' - lambda eta.
 struct ProportionalModes {

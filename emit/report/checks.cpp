@@ -5,6 +5,7 @@
 #include <titop/analysis/certify/faults.hpp>
 #include <titop/emit/report/html.hpp>
 #include <titop/emit/report/subject.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::report {
 namespace {
@@ -223,7 +224,7 @@ PoleCounts pole_counts(const std::vector<Pole>& poles) {
       found.zero += n;
     else if (p.omega <= kNearZero * fastest && p.s.real() > 0)
       found.near += n;
-    else if (p.s.real() > 1e-9 * p.omega)
+    else if (p.s.real() > linalg::kPoleOnAxis * p.omega)
       found.right += n;
     else if (p.s.real() >= -1e-12 * p.omega)
       found.axis += n;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <titop/emit/report/html.hpp>
 #include <titop/emit/report/subject.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::report {
 namespace {
@@ -34,10 +35,11 @@ std::string pole_table(const Subject& s, std::size_t begin, std::size_t end) {
           R"(<span class="share"><i class="bar" style="width:{:.0f}px"></i>{} {:.0f} %</span> )",
           60 * share, diagram::html(name), 100 * share);
     if (p.unlike_bodies()) shares += fmt::format("(bodies: xi {})", xi_of_bodies(p));
-    text += row({fmt::format("{}{}", i + 1, p.pair ? "" : " (real)"), number(p.hertz, 6),
-                 number(p.omega, 6), p.omega > 0 ? number(100 * p.damping, 4) : "–",
-                 number(p.s.real(), 4), shares},
-                {"n", "n", "n", "n", p.s.real() > 1e-9 * p.omega ? "n bad" : "n", "wide"});
+    text += row(
+        {fmt::format("{}{}", i + 1, p.pair ? "" : " (real)"), number(p.hertz, 6),
+         number(p.omega, 6), p.omega > 0 ? number(100 * p.damping, 4) : "–", number(p.s.real(), 4),
+         shares},
+        {"n", "n", "n", "n", p.s.real() > linalg::kPoleOnAxis * p.omega ? "n bad" : "n", "wide"});
   }
   return text + "</tbody></table></div>\n";
 }

@@ -9,6 +9,7 @@
 #include <titop/emit/report/html.hpp>
 #include <titop/emit/report/plot.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::report {
 namespace {
@@ -95,7 +96,8 @@ TimeGrid time_grid(const Subject& s, const Shares& shares, const std::vector<IoP
     if (!p.pair && p.s.real() < 0) decay = std::max(decay, -6 / p.s.real());
   }
   const std::vector<Pole> all = moving(s.poles);
-  for (const Pole& p : all) grow = std::max(grow, p.s.real() > 1e-9 * p.omega ? p.s.real() : 0);
+  for (const Pole& p : all)
+    grow = std::max(grow, p.s.real() > linalg::kPoleOnAxis * p.omega ? p.s.real() : 0);
   double until = std::max(swing, swing > 0 ? std::min(decay, 10 * swing) : decay);
   if (grow > 0) until = std::min(until > 0 ? until : HUGE_VAL, 8 / grow);
   c.until = s.options.until > 0 ? s.options.until : until > 0 ? round_up(until) : 1;

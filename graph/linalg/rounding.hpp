@@ -30,4 +30,11 @@ inline constexpr double kOrthonormal = 1e-9;
 /// that a choice does not depend on the last bits.
 inline constexpr double kTie = 1 + 1e-9;
 
+/// Relative: frequencies, poles and dampings this near are equal. The vectors of two such modes
+/// have no digits of their own [Golub, Van Loan 8.1.3].
+inline constexpr double kSameFrequency = 1e-9;
+/// A pole is on the imaginary axis if its real part is below this share of its modulus: it may be
+/// rounding.
+inline constexpr double kPoleOnAxis = 1e-9;
+
 }  // namespace titop::linalg
