@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/pole.hpp>
 #include <titop/graph/state_space.hpp>
 
@@ -13,13 +13,13 @@ namespace {
 /// Limit for A with scaled entries: below it rounding decides whether A is singular, as its entries
 /// may be off by some units in the last place. (A spring of 1e-12 with one of 1 has 1e-12, the
 /// static bending of a row of 20 beams 4e-13.)
-constexpr double kSingular = 10 * std::numeric_limits<double>::epsilon();
-/// If one step of refinement changes the solution by more, it has no digit.
-constexpr double kNoDigit = 0.1;
+constexpr double kSingular = 10 * linalg::kEpsilon;
 
 /// At s = 0, where many systems have exact poles, a pivot at rounding level counts as a pole. (At
 /// another s a pivot that small may be correct: two dozen integrators in a row.)
-bool pole_at_zero(const linalg::Solution& x) { return x.rcond < kSingular || x.moved > kNoDigit; }
+bool pole_at_zero(const linalg::Solution& x) {
+  return x.rcond < kSingular || x.moved > linalg::kOneDigit;
+}
 
 }  // namespace
 

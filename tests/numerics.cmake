@@ -1,11 +1,10 @@
-# docs/numerics.md has every constant by which the compiler and some analyses decide, as
-# `file:kName = value`, and no other: every "constexpr double k..." of these rooms, and those that they
-# share.
+# docs/numerics.md has every constant by which these rooms decide, as `file:kName = value`, and no
+# other: every "constexpr double k..." of their files. The tests that it names exist.
 cmake_policy(VERSION 3.25)
 file(READ ${ROOT}/docs/numerics.md page)
 set(files)
-foreach(room compiler analysis/shapes analysis/distributed analysis/damping analysis/norms
-             analysis/simulation)
+foreach(room compiler analysis/certify analysis/shapes analysis/distributed analysis/damping
+             analysis/norms analysis/simulation)
   file(GLOB_RECURSE of_room RELATIVE ${ROOT} ${ROOT}/${room}/*.hpp ${ROOT}/${room}/*.cpp)
   list(APPEND files ${of_room})
 endforeach()
@@ -34,6 +33,16 @@ list(LENGTH listed there)
 if(NOT count EQUAL there)
   string(APPEND wrong "\n  ${there} constants there, ${count} in the code")
 endif()
+string(REGEX MATCHALL "\\| [a-z_]+\\.[a-z0-9_., ]+ \\|\n" cells "${page}")
+foreach(cell ${cells})
+  string(REGEX MATCHALL "[a-z_]+\\.[a-z0-9_]+" tests "${cell}")
+  foreach(test ${tests})
+    string(REPLACE "." "/" source ${test})
+    if(NOT EXISTS ${ROOT}/tests/${source}.cpp)
+      string(APPEND wrong "\n  there is no test ${test}")
+    endif()
+  endforeach()
+endforeach()
 if(wrong)
-  message(FATAL_ERROR "docs/numerics.md is not the list of the compiler's constants:${wrong}")
+  message(FATAL_ERROR "docs/numerics.md is not the list of the library's constants:${wrong}")
 endif()

@@ -253,7 +253,7 @@ void list_faults(const System& system, FullCertificate& c) {
                       c.poles.right, c.poles.rightmost.real() / std::abs(c.poles.rightmost)));
   }
   if (const auto& r = c.reciprocity; r.structure)
-    fault(r.asymmetry, certification::kReciprocal,
+    fault(r.asymmetry, certification::kHolds,
           fmt::format("forces {} and {} on a structure are not reciprocal, by", r.first, r.second));
   if (c.exact.decided && c.order.judged &&
       (c.exact.order < c.order.lowest || c.exact.order > c.order.highest))

@@ -58,7 +58,7 @@ std::string to_string(const FullCertificate::Reciprocity& r) {
   if (!r.done) return "reciprocity not checked: " + r.why_not + "\n";
   std::string text =
       fmt::format("{} forces: {}", r.forces,
-                  r.asymmetry <= certification::kReciprocal ? "reciprocal" : "not reciprocal");
+                  r.asymmetry <= certification::kHolds ? "reciprocal" : "not reciprocal");
   if (r.reversed) text += " if all momenta are reversed";
   if (r.asymmetry > 0)
     text +=

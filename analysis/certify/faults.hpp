@@ -9,11 +9,12 @@
 /// library's own files.
 namespace titop::certification {
 
-inline constexpr double kHolds = 1e-8;  ///< equations, and entries of the dense model one by one
+/// Equations, entries of the dense model one by one, reciprocity of a structure.
+inline constexpr double kHolds = 1e-8;
 /// Allowed rounding error of A, B, C, D: that of code generated from them.
 inline constexpr double kDenseHolds = 3e-7;
-inline constexpr double kPoleHolds = 1e-6;  ///< to first order only
-inline constexpr double kReciprocal = 1e-8;
+/// A pole of the dense model is that of the factors, or of the minimal model: to first order only.
+inline constexpr double kPoleHolds = 1e-6;
 
 /// The failed checks, in words. `dense`: largest difference between transfers of the dense model
 /// and of the factors over a grid; negative if there is none.

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <titop/analysis/certify/passivity.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::certification {
 namespace {
@@ -10,17 +11,16 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
-/// Relative to the largest entry of the same units: less is rounding, along a locked axis.
-constexpr double kOfUnit = 64 * 2.2e-16;
-
-/// Possible rounding of each entry of G / s.
+/// Possible rounding of each entry of G / s: at least that of the largest entry of the same units,
+/// as along a locked axis.
 MatrixXd floors(const DualTransfers& t, std::size_t point) {
   const double s = std::abs(t.points[point]);
   MatrixXd result(t.G[point].rows(), t.G[point].cols());
   for (Index row = 0; const Index n : t.by.rows) {
     for (Index column = 0; const Index m : t.by.cols) {
       const double largest = t.G[point].block(row, column, n, m).cwiseAbs().maxCoeff();
-      const double rounding = std::max(t.floor(row, column, n, m), kOfUnit * largest);
+      const double rounding =
+          std::max(t.floor(row, column, n, m), linalg::kProductRounding * largest);
       result.block(row, column, n, m).setConstant(rounding / s);
       column += m;
     }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <titop/analysis/certify/faults.hpp>
 #include <titop/analysis/certify/poles.hpp>
 #include <titop/compiler/system/system.hpp>
 #include <titop/graph/linalg/dense.hpp>
@@ -15,8 +16,8 @@ using Eigen::VectorXd;
 /// A pole that rounding of A may move by more than this, relative to its size, gives no verdict on
 /// the model.
 constexpr double kMeasurable = 1e-8;
-/// Relative distance: a pole of the minimal model is one of the whole, up to the rounding of both.
-constexpr double kSamePole = 1e-6;
+/// Times its possible error: the real part of a pole that is surely right of the axis.
+constexpr double kSurely = 10;
 
 /// A v through the factors.
 VectorXcd times(const System& system, const VectorXcd& v) {
@@ -50,9 +51,9 @@ FoundPoles check_poles(const System& system, const StateSpace& model,
     const double size = std::abs(s);
     const double moved = (e.W.row(k).cwiseAbs() * rounding * e.V.col(k).cwiseAbs())(0);
     const double rounded = linalg::kEpsilon * norm * left(k) * right(k) + moved;
-    if (size > 0 && rounded <= 0.1 * size) found.omegas.push_back(size);
+    if (size > 0 && rounded <= linalg::kOneDigit * size) found.omegas.push_back(size);
     if (!(rounded <= kMeasurable * size)) {
-      if (s.real() > 10 * rounded) {  // not measured, but if it is not in doubt
+      if (s.real() > kSurely * rounded) {  // not measured, but if it is not in doubt
         found.right.push_back({s, rounded});
         keep_rightmost(s);
       }
@@ -65,7 +66,7 @@ FoundPoles check_poles(const System& system, const StateSpace& model,
     const double error = change == 0 ? 0 : change / size;  // 0 to the last bit if A is 0
     p.measured += both;
     if (error > p.error) p.error = error, p.where = s;
-    if (s.real() > std::max(linalg::kPoleOnAxis, 10 * error) * size) {
+    if (s.real() > std::max(linalg::kPoleOnAxis, kSurely * error) * size) {
       found.right.push_back({s, rounded});
       if (both == 2) found.right.push_back({std::conj(s), rounded});
     }
@@ -83,7 +84,7 @@ std::vector<FoundPoles::Right> shown(const std::vector<FoundPoles::Right>& right
   std::vector<std::complex<double>> all(values.begin(), values.end());
   std::vector<FoundPoles::Right> result;
   for (const FoundPoles::Right& pole : right) {
-    const double apart = std::max(kSamePole * std::abs(pole.s), pole.rounding);
+    const double apart = std::max(kPoleHolds * std::abs(pole.s), pole.rounding);
     const auto same = std::find_if(all.begin(), all.end(), [&](std::complex<double> s) {
       return std::abs(s - pole.s) <= apart;
     });

@@ -6,6 +6,7 @@
 #include <titop/analysis/certify/reciprocity.hpp>
 #include <titop/compiler/system/system.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::certification {
 namespace {
@@ -14,8 +15,6 @@ using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
-
-constexpr double kByItself = 1e-12;  ///< of a block's response: rounding and no more
 
 using linalg::at;
 
@@ -67,7 +66,8 @@ bool is_symmetric(const Dynamics& d, const Eigen::VectorXd& sign) {
     const MatrixXd a = sign.segment(g.row, rows).asDiagonal() * g.gain;
     const MatrixXd b =
         sign.segment(g.column, cols).asDiagonal() * d.direct(g.column, g.row, cols, rows);
-    return (a - b.transpose()).cwiseAbs().maxCoeff() <= kByItself * a.cwiseAbs().maxCoeff();
+    return (a - b.transpose()).cwiseAbs().maxCoeff() <=
+           linalg::kAxisRounding * a.cwiseAbs().maxCoeff();
   });
 }
 
@@ -88,7 +88,7 @@ bool is_reciprocal(const Block& block, ParameterValues values, Complex s) {
   if (const auto d = block.dynamics(values); !d->sparse.empty()) return is_symmetric(*d, sign);
   const MatrixXcd Y = block.response(s, values).Y.topLeftCorner(sign.size(), sign.size());
   own.G = {sign.asDiagonal() * Y};
-  return asymmetry(own).worst <= kByItself;
+  return asymmetry(own).worst <= linalg::kAxisRounding;
 }
 
 /// Names a node whose block alone is not reciprocal; empty if all are. Shared blocks are checked

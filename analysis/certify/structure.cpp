@@ -7,6 +7,7 @@
 #include <titop/compiler/passes/check/springs.hpp>
 #include <titop/graph/drives.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/support/steady_random.hpp>
 
 namespace titop::certification {
@@ -14,8 +15,6 @@ namespace {
 
 using Eigen::VectorXd;
 using ChannelVectors = std::vector<VectorXd>;  ///< one per channel
-
-constexpr double kNoWork = 1e-12;  ///< of the sum of magnitudes: rounding of rotations
 
 using linalg::at;
 
@@ -137,10 +136,10 @@ class Connections {
 /// is linear in the wrenches.
 std::string taken_for_nothing(const Graph& g, Connections& all) {
   std::size_t first = 0, end = all.size();
-  if (all.work(first, end) <= kNoWork) return "";
+  if (all.work(first, end) <= linalg::kAxisRounding) return "";
   while (end - first > 1) {
     const std::size_t middle = (first + end) / 2;
-    (all.work(first, middle) > kNoWork ? end : first) = middle;
+    (all.work(first, middle) > linalg::kAxisRounding ? end : first) = middle;
   }
   return fmt::format("{} takes the motion of a point and returns no wrench there",
                      channel_name(g, static_cast<int>(first)));

@@ -4,6 +4,7 @@
 #include <titop/analysis/reduction/reduced_data.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/pole.hpp>
 
 /// The forms that a reduced system can be had in.
@@ -114,7 +115,8 @@ MatrixXcd SecondOrderModel::transfer(Complex s) const {
   const MatrixXcd S = s * s * M.cast<Complex>() + s * D.cast<Complex>() + K.cast<Complex>();
   if (S.rows() == 0) return direct.cast<Complex>();
   const auto solved = linalg::solve(S, B.cast<Complex>());
-  if (!(solved.rcond > 0) || !solved.z.allFinite() || (s == 0.0 && solved.moved > 0.1))
+  if (!(solved.rcond > 0) || !solved.z.allFinite() ||
+      (s == 0.0 && solved.moved > linalg::kOneDigit))
     throw pole_at(s, "the reduced structure");
   return direct.cast<Complex>() + c * solved.z;
 }

@@ -11,7 +11,8 @@ namespace titop::detail {
 
 using linalg::kNoise;
 
-/// Of cancelling terms: the size of an entry that is smaller.
+/// Share of the terms of an entry that is its size if they cancel further: double has no better
+/// accuracy than 1e-15 of them.
 inline constexpr double kOfTerms = 1e-3;
 /// Floor of a zero entry, relative to its neighbours: in one order of summation the terms of a 0
 /// cancel exactly, in another to 1e-17.

@@ -212,7 +212,7 @@ class DigitJudge {
   }
 
   static double limit_of_doubt(const DataPort& p) {
-    return p.limit() * (p.by_shapes ? kOneDigit * kOneDigit : kOneDigit);
+    return p.limit() * (p.by_shapes ? linalg::kOneDigit * linalg::kOneDigit : linalg::kOneDigit);
   }
 
   /// These ports of one block, which all take forces or all accelerations.

@@ -22,8 +22,6 @@ Error not_refined(const Factored& data, std::complex<double> s, double error);
 /// A larger change of the outputs needs another step of refinement, in any precision; a larger
 /// error a finer precision, or it is refused.
 constexpr double kEnough = 1e-12;
-/// A result that the data, or their last place, change by more has not one digit.
-constexpr double kOneDigit = 0.1;
 /// Safety factor of the estimate of rounding, which is one sample of a random order: others have
 /// been up to this factor larger.
 constexpr double kRoundings = 4;

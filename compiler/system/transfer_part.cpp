@@ -7,6 +7,7 @@
 #include <titop/compiler/solve/transposed_evaluation.hpp>
 #include <titop/compiler/system/system_data.hpp>
 #include <titop/compiler/system/transfer_part.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::detail {
 namespace {
@@ -133,7 +134,7 @@ std::optional<TransferPart> without_pivot(const TransferRequest& r) {
     const auto losses = point.losses();
     const double in_double =
         losses.rounding / solve::Scalar<T>::epsilon() * solve::Scalar<Double>::epsilon();
-    if (lost_by(point, losses) <= kEnough && in_double <= kOneDigit) return point.rounded();
+    if (lost_by(point, losses) <= kEnough && in_double <= linalg::kOneDigit) return point.rounded();
   } catch (const Error&) {  // a pole of a block, or no pivot here either
   }
   return {};

@@ -321,7 +321,7 @@ std::shared_ptr<const SystemData> updated(const SystemData& old,
                           old.changed_loops.end());
   keep_each_once(d->changed_loops);
   // A pivot about as weak as before (within a digit) has been judged then.
-  if (health.weakest < std::min(kFewDigits, kOneDigit * old.scaled_health.weakest)) {
+  if (health.weakest < std::min(kFewDigits, linalg::kOneDigit * old.scaled_health.weakest)) {
     update_margins(*d);
     d->weak_pivots = judge_weak_pivots(*d, *d->margins);
     if (d->weak_pivots->least > 0) return again(kNoDigit);

@@ -90,7 +90,7 @@ void add_reciprocity(std::vector<Item>& items, const FullCertificate::Reciprocit
                                r.reversed ? ", G_ji with all momenta reversed" : "",
                                r.first.empty() ? "" : fmt::format("; {} and {}", r.first, r.second),
                                r.structure ? "" : "; not required: " + r.why_no_structure),
-                   r.structure ? judged(r.asymmetry, certification::kReciprocal) : Mark::none});
+                   r.structure ? judged(r.asymmetry, kHolds) : Mark::none});
 }
 
 void add_full(std::vector<Item>& items, const FullCertificate& f) {

@@ -29,6 +29,8 @@ inline constexpr double kOrthonormal = 1e-9;
 /// A number is larger than another beyond rounding: otherwise the first in the graph is taken, so
 /// that a choice does not depend on the last bits.
 inline constexpr double kTie = 1 + 1e-9;
+/// A result that its data, or one step of refinement, change by more has not one digit.
+inline constexpr double kOneDigit = 0.1;
 
 /// Relative: frequencies, poles and dampings this near are equal. The vectors of two such modes
 /// have no digits of their own [Golub, Van Loan 8.1.3].
