@@ -3,8 +3,8 @@
 cmake_policy(VERSION 3.25)
 file(READ ${ROOT}/docs/numerics.md page)
 set(files)
-foreach(room compiler analysis/certify analysis/shapes analysis/distributed analysis/damping
-             analysis/norms analysis/simulation)
+foreach(room compiler analysis/bracket analysis/certify analysis/control analysis/damping
+             analysis/distributed analysis/lft analysis/norms analysis/shapes analysis/simulation)
   file(GLOB_RECURSE of_room RELATIVE ${ROOT} ${ROOT}/${room}/*.hpp ${ROOT}/${room}/*.cpp)
   list(APPEND files ${of_room})
 endforeach()

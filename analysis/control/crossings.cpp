@@ -17,8 +17,8 @@ using Function = std::function<double(double)>;
 
 constexpr int kBits = 50;  ///< of a frequency: all but three
 
-/// Candidates below this share of the slowest root of L are rounding of the point at 0.
-constexpr double kAtZero = 1e-6;
+/// f, which is at most 1, is smaller at a root that is known to kBits, and not at a jump.
+constexpr double kRoot = 1e-3;
 
 void add(std::vector<Complex>& list, const Eigen::VectorXcd& more) {
   list.insert(list.end(), more.begin(), more.end());
@@ -50,7 +50,7 @@ StateSpace real_axis(const StateSpace& L) {
 
 /// Roots of f between neighbours of the list by its changes of sign; jumps (poles on the axis) are
 /// none, nor are intervals in which f is 0. A candidate at which f is 0 to half the digits, without
-/// a change of sign near it, is a root, too: there the curve touches.
+/// a change of sign near it, is a root, too: there the curve touches, and the candidate is double.
 std::vector<double> roots_of(const Function& f, const std::vector<double>& list,
                              const std::vector<Complex>& candidates) {
   std::vector<double> roots;
@@ -63,28 +63,30 @@ std::vector<double> roots_of(const Function& f, const std::vector<double>& list,
       const auto [a, b] = boost::math::tools::toms748_solve(
           f, last, omega, at_last, value, boost::math::tools::eps_tolerance<double>(kBits), steps);
       const double root = std::abs(f(a)) < std::abs(f(b)) ? a : b;
-      if (std::abs(f(root)) < 1e-3) roots.push_back(root);
+      if (std::abs(f(root)) < kRoot) roots.push_back(root);
     }
     last = omega, at_last = value;
   }
   for (const Complex& s : candidates) {
     const double omega = std::abs(s.imag());
-    const bool found = std::any_of(roots.begin(), roots.end(),
-                                   [&](double r) { return std::abs(r - omega) <= 1e-6 * omega; });
+    const bool found = std::any_of(roots.begin(), roots.end(), [&](double r) {
+      return std::abs(r - omega) <= linalg::kDoubleRoot * omega;
+    });
     if (omega > 0 && !found && std::abs(f(omega)) <= linalg::kHalfDigits) roots.push_back(omega);
   }
   std::sort(roots.begin(), roots.end());
   return roots;
 }
 
-/// Takes out candidates that are rounding of a root of f at 0. `roots`: of L.
+/// Takes out candidates that are rounding of a double root of f at 0. `roots`: of L.
 void drop_at_zero(std::vector<Complex>& candidates, const std::vector<Complex>& roots,
                   const Function& f) {
   if (!(std::abs(f(0)) <= linalg::kHalfDigits)) return;
   double slowest = 0;
   for (const Complex& s : roots)
     if (s != 0.0 && (slowest == 0 || std::abs(s) < slowest)) slowest = std::abs(s);
-  std::erase_if(candidates, [&](const Complex& s) { return std::abs(s) < kAtZero * slowest; });
+  std::erase_if(candidates,
+                [&](const Complex& s) { return std::abs(s) < linalg::kDoubleRoot * slowest; });
 }
 
 std::vector<Complex> roots_of_model(const StateSpace& L) {

@@ -12,6 +12,11 @@
 #include <titop/graph/support/each_once.hpp>
 
 namespace titop::detail {
+namespace {
+
+constexpr double kMostTurns = 1e5;  ///< of a delay, in quarters
+
+}  // namespace
 
 LoopResponse::LoopResponse(const StateSpace& L, double delay)
     : C_(L.C), D_(L.D), solver_(L.A, L.B), delay_(delay) {}
@@ -80,7 +85,7 @@ double end_of_turns(const LoopResponse& response, const std::vector<std::complex
   for (const double omega : list)
     if (size(omega) >= least) end = std::max(end, omega);
   end += 2 * turn;
-  if (4 * end > 1e5 * turn)
+  if (4 * end > kMostTurns * turn)
     throw Error(Code::bad_value,
                 fmt::format("a delay of {:g} s is {:.2g} turns at {:.3g} rad/s, where the loop "
                             "still matters",

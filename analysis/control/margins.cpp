@@ -1,6 +1,5 @@
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <titop/analysis/control/crossings.hpp>
 #include <titop/analysis/control/feedback.hpp>
@@ -20,7 +19,6 @@ namespace {
 using detail::LoopResponse;
 using Eigen::MatrixXd;
 using std::numbers::pi;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Least values, and where they are, of distances along the axis.
 struct Distances {
@@ -36,14 +34,14 @@ Distances by_norms(const StateSpace& L) {
   S.D = 2 * S.D - MatrixXd::Identity(S.D.rows(), S.D.cols());  // S - T
   const HinfNorm disk = norm_hinf(S);
   const MarginAt inside{1 / nearest.value, nearest.omega};
-  return {inside, disk.value > 1 ? DiskMargin{2 / disk.value, disk.omega}
-                                 : DiskMargin{2, std::numeric_limits<double>::infinity()}};
+  return {inside,
+          disk.value > 1 ? DiskMargin{2 / disk.value, disk.omega} : DiskMargin{2, HUGE_VAL}};
 }
 
 /// The least f(omega) over the list and between its neighbours.
 template <class F>
 MarginAt least(const F& f, const std::vector<double>& list) {
-  MarginAt best{kInfinity, 0};
+  MarginAt best{HUGE_VAL, 0};
   std::vector<double> values;
   for (const double omega : list) values.push_back(f(omega));
   for (std::size_t i = 0; i < list.size(); ++i) {
@@ -68,18 +66,18 @@ Distances on_grid(const StateSpace& L, const LoopResponse& response,
       detail::structured(roots, 8 * response.delay(), detail::end_of_turns(response, roots));
   const auto distance = [&](double w) { return std::abs(1.0 + response.at(w)); };
   const MarginAt nearest =
-      least([&](double w) { return std::isfinite(distance(w)) ? distance(w) : kInfinity; }, list);
+      least([&](double w) { return std::isfinite(distance(w)) ? distance(w) : HUGE_VAL; }, list);
   const MarginAt disk = least(
       [&](double w) {
         return std::isfinite(distance(w)) ? 2 * distance(w) / std::abs(1.0 - response.at(w)) : 2;
       },
       list);
-  return {nearest.value < 1 ? nearest : MarginAt{1, kInfinity},
-          disk.value < 2 ? DiskMargin{disk.value, disk.omega} : DiskMargin{2, kInfinity}};
+  return {nearest.value < 1 ? nearest : MarginAt{1, HUGE_VAL},
+          disk.value < 2 ? DiskMargin{disk.value, disk.omega} : DiskMargin{2, HUGE_VAL}};
 }
 
 void gain_margins(LoopMargins& m) {
-  m.larger_gain = {kInfinity, 0}, m.smaller_gain = {0, 0};
+  m.larger_gain = {HUGE_VAL, 0}, m.smaller_gain = {0, 0};
   for (const LoopCrossing& c : m.negative) {
     const double factor = 1 / std::abs(c.L);
     if (factor >= 1 && factor < m.larger_gain.value) m.larger_gain = {factor, c.omega};
@@ -89,8 +87,8 @@ void gain_margins(LoopMargins& m) {
 
 /// `direct`: |L| at infinite frequency. From 1 on, any delay turns L there past -1 again and again.
 void phase_margins(LoopMargins& m, double direct) {
-  m.phase = {kInfinity, 0}, m.delay = {kInfinity, 0};
-  if (direct >= 1) m.delay = {0, kInfinity};
+  m.phase = {HUGE_VAL, 0}, m.delay = {HUGE_VAL, 0};
+  if (direct >= 1) m.delay = {0, HUGE_VAL};
   for (const LoopCrossing& c : m.unit) {
     const double ahead = std::arg(-c.L);  // of -1, from -pi to pi
     if (std::abs(ahead) < m.phase.value) m.phase = {std::abs(ahead), c.omega};

@@ -16,7 +16,10 @@ using Complex = std::complex<double>;
 using Eigen::MatrixXcd;
 using std::numbers::pi;
 
-constexpr double kMostTurn = 0.5;  ///< [rad] of the determinant in half a step
+constexpr double kMostTurn = 0.5;     ///< [rad] of the determinant in half a step
+constexpr double kFirstStep = 1e-12;  ///< of its modulus: beside a pole on the axis
+constexpr double kEnd = 1e3;          ///< times the fastest pole: the determinant is near its limit
+constexpr double kWhole = 0.1;        ///< of a turn: the sum of all is a whole number of them
 constexpr int kHalvings = 40;
 /// Of a determinant that is rounding alone no step is small enough: the count then does not agree.
 constexpr int kSplits = 1000;  ///< of one piece
@@ -89,7 +92,7 @@ std::vector<double> steps(double from, double to, const std::vector<Complex>& po
   };
   for (const Complex& s : poles) {
     add(s.imag());
-    const double size = std::max(std::abs(s.real()), 1e-12 * std::abs(s));
+    const double size = std::max(std::abs(s.real()), kFirstStep * std::abs(s));
     for (double d = size; d > 0 && d < 4 * std::abs(s); d *= 4)
       add(s.imag() + d), add(s.imag() - d);
   }
@@ -108,7 +111,7 @@ double end_of_steps(const StateSpace& L, const LoopResponse& response,
     return end_of_turns(response, roots);
   }
   double end = 1;
-  for (const Complex& s : poles) end = std::max(end, 1e3 * std::abs(s));
+  for (const Complex& s : poles) end = std::max(end, kEnd * std::abs(s));
   return end;
 }
 
@@ -158,7 +161,7 @@ NyquistCount nyquist_count(const StateSpace& L, const LoopResponse& response) {
   const double turns = -2 * turn_of_half(L, response, open, poles) / (2 * pi);
   count.encirclements = static_cast<int>(std::lround(turns));
   if (response.delay() > 0) count.closed_right = count.open_right + count.encirclements;
-  count.agree = std::abs(turns - count.encirclements) < 0.1 && count.closed_right >= 0 &&
+  count.agree = std::abs(turns - count.encirclements) < kWhole && count.closed_right >= 0 &&
                 count.encirclements == count.closed_right - count.open_right;
   return count;
 }

@@ -40,11 +40,10 @@ LoopMatrix loop(const StateSpace& m, const VectorXd& deltas) {
 /// if its norm is below 1. Rounding splits equal ones into pairs of half the digits; a pair so near
 /// the axis comes within 1e-6 of singular.
 bool singular_between(const LoopMatrix& l) {
-  constexpr double kReal = 64 * linalg::kHalfDigits;
   if (norm1(l.product) < 1) return false;
   const Eigen::VectorXcd values = linalg::eigenvalues(l.product);
   return std::any_of(values.begin(), values.end(), [](const std::complex<double>& z) {
-    return z.real() > 1 && std::abs(z.imag()) <= kReal * std::abs(z);
+    return z.real() > 1 && std::abs(z.imag()) <= linalg::kDoubleRoot * std::abs(z);
   });
 }
 

@@ -8,6 +8,7 @@
 #include <titop/analysis/lft/lower_bounds.hpp>
 #include <titop/analysis/lft/opening.hpp>
 #include <titop/analysis/lft/structured.hpp>
+#include <titop/compiler/definition/compare.hpp>
 #include <titop/compiler/system/compile_graph.hpp>
 #include <titop/graph/closed_form.hpp>
 #include <titop/graph/linalg/eigen.hpp>
@@ -119,8 +120,7 @@ detail::Structured small_model(const StateSpace& opened, const std::vector<int>&
                                const std::vector<Delta>& deltas) {
   const StateSpace whole = normalised(opened, deltas, sizes);
   detail::Structured small = detail::reduced(whole, sizes);
-  constexpr double kSame = 1e-9;
-  if (difference(whole, sizes, small.m, small.sizes) <= kSame) return small;
+  if (difference(whole, sizes, small.m, small.sizes) <= detail::kClose) return small;
   return {whole, sizes, small.margin};
 }
 

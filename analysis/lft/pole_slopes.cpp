@@ -18,9 +18,8 @@ using linalg::at;
 /// Rounding moves the two poles of a defective pair apart by its root, and leaves their vectors
 /// parallel to it [G 7.2]; those of equal poles with vectors of their own by rounding times their
 /// condition number, of which kApart allows 1e4. A reciprocal condition number of the vectors above
-/// 64 roots is none of a defective pair.
-constexpr double kEqual = linalg::kHalfDigits, kParallel = 64 * kEqual;
-/// Subspaces are split while that costs less than four digits.
+/// kDoubleRoot is none of a defective pair. Subspaces are split while that costs less than four
+/// digits.
 constexpr double kApart = 1e4;
 
 /// Poles of one invariant subspace: A R = R diag(values), L R = I.
@@ -44,18 +43,21 @@ Subspace subspace(const MatrixXd& A, const linalg::Spectrum& s,
   const Eigen::PartialPivLU<MatrixXcd> lu(to_real);
   const MatrixXd left = MatrixXcd(lu.solve(W)).real();
   const linalg::Eigensystem e = linalg::eigensystem(left * A * U);
-  return {e.values, e.W * left, U * e.V, !(e.rcond_V > kParallel)};
+  return {e.values, e.W * left, U * e.V, !(e.rcond_V > linalg::kDoubleRoot)};
 }
 
 /// Rounding moves two equal real poles off the axis.
-bool is_real(const std::complex<double>& s) { return std::abs(s.imag()) <= kEqual * std::abs(s); }
+bool is_real(const std::complex<double>& s) {
+  return std::abs(s.imag()) <= linalg::kHalfDigits * std::abs(s);
+}
 
 /// The next places of `todo` whose poles are equal to the first one's.
 std::vector<Index> equal_ones(const Eigen::VectorXcd& values, std::vector<Index>& todo) {
   const std::complex<double> s = values(todo.front());
   std::vector<Index> equal, others;
   for (const Index i : todo)
-    (std::abs(values(i) - s) <= 2 * kEqual * std::abs(s) || values(i) == s ? equal : others)
+    (std::abs(values(i) - s) <= 2 * linalg::kHalfDigits * std::abs(s) || values(i) == s ? equal
+                                                                                        : others)
         .push_back(i);
   todo = std::move(others);
   return equal;

@@ -35,8 +35,8 @@ std::string to_string(const ParameterMap& map, const std::string& name) {
   const std::string d = map.kind == ParameterMap::Kind::number
                             ? shifted
                             : fmt::format("tan({} / {})", shifted, map.divisor());
-  // Rounding of a range given in percent.
-  if (std::abs(map.shape) <= 1e-12) return fmt::format("{} / {:.6g}", d, map.gain);
+  constexpr double kSymmetric = 1e-12;  // rounding of a range given in percent
+  if (std::abs(map.shape) <= kSymmetric) return fmt::format("{} / {:.6g}", d, map.gain);
   return fmt::format("Moebius of {}", d);
 }
 

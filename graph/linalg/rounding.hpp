@@ -14,6 +14,9 @@ inline constexpr double kProductRounding = 64 * kEpsilon;
 /// and the place of a maximum, are known no better from matrices with all their digits [Golub, Van
 /// Loan 7.2].
 inline constexpr double kHalfDigits = 0x1p-26;
+/// Distance, relative to their modulus, of two roots that are one for exact data: half the digits,
+/// times up to 64 of their condition.
+inline constexpr double kDoubleRoot = 64 * kHalfDigits;
 /// Rounding of a component of an axis (a unit vector) after some rotations, with room for axes of
 /// twelve typed digits: a smaller component is 0.
 inline constexpr double kAxisRounding = 1e-12;

@@ -283,3 +283,11 @@ TEST_CASE("two examples of MATLAB's documentation: 2, 3, 1 and 2 occurrences") {
   check_one(row, percent(50), 2);
   CHECK(lft(row, {{"p", percent(50)}}).deltas()[0].built == 5);
 }
+
+TEST_CASE("the map of a range in percent is linear, though its ends are rounded") {
+  using Kind = ParameterMap::Kind;
+  const ParameterMap even(Kind::number, 3, 3 * 0.9, 3 * 1.1), uneven(Kind::number, 3, 2.7, 3.4);
+  CHECK(even.shape != 0);
+  CHECK(to_string(even, "m") == "(m - 3) / 0.3");
+  CHECK(to_string(uneven, "m").starts_with("Moebius"));
+}
