@@ -3,8 +3,7 @@
 cmake_policy(VERSION 3.25)
 file(READ ${ROOT}/docs/numerics.md page)
 set(files)
-foreach(room compiler analysis/bracket analysis/certify analysis/control analysis/damping
-             analysis/distributed analysis/lft analysis/norms analysis/shapes analysis/simulation)
+foreach(room compiler analysis)
   file(GLOB_RECURSE of_room RELATIVE ${ROOT} ${ROOT}/${room}/*.hpp ${ROOT}/${room}/*.cpp)
   list(APPEND files ${of_room})
 endforeach()

@@ -22,9 +22,6 @@ using linalg::at;
 constexpr double kDigits = 12;
 /// Of a port's sensitivity to all modes: less is rounding (by symmetry no force moves the mode).
 constexpr double kSeen = 1e-10;
-/// Of the rows of a rigid body's kinematics, and of two modal vectors that reciprocity makes equal:
-/// the tolerance with which the second-order form is symmetric (analysis/reduction).
-constexpr double kStructure = 1e-7;
 
 [[noreturn]] void refuse(const std::string& message, const std::string& hint,
                          std::vector<std::string> details = {}) {
@@ -185,7 +182,7 @@ MatrixXd mass_normalised(const Whole& w, const std::string& name) {
                           read = w.ca.col(j).cwiseQuotient(size);
     if (moved.cwiseAbs().maxCoeff() <= kSeen) continue;
     const double mass = moved.dot(read) / moved.squaredNorm();
-    if (!(mass > 0) || (read - mass * moved).norm() > kStructure * mass * moved.norm())
+    if (!(mass > 0) || (read - mass * moved).norm() > kSymmetric * mass * moved.norm())
       refuse(
           fmt::format("{} is not reciprocal: forces at its ports excite the mode at {:.4g} rad/s "
                       "otherwise than their motions show it",
@@ -208,8 +205,8 @@ ModalChild child_at(const AssemblyPort& port, const Matrix6& rigid, const Matrix
   expected.topRows<3>() = (R * expected.topRows<3>()).eval();
   expected.bottomRows<3>() = (R * expected.bottomRows<3>()).eval();
   const double scale = std::max(1.0, c.PC.norm());
-  if ((rigid - expected).cwiseAbs().maxCoeff() > kStructure * scale ||
-      (R * R.transpose() - Matrix3d::Identity()).cwiseAbs().maxCoeff() > kStructure)
+  if ((rigid - expected).cwiseAbs().maxCoeff() > kSymmetric * scale ||
+      (R * R.transpose() - Matrix3d::Identity()).cwiseAbs().maxCoeff() > kSymmetric)
     refuse(fmt::format("{} does not follow rigid motions of the root", port.port),
            "the part hangs by its root alone: connect other supports to the body's ports");
   return c;

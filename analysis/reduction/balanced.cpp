@@ -16,13 +16,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kSilent = 1e-11;    ///< of the peaks: an unreachable or unobservable pole
-constexpr double kUnstable = 1e-6;   ///< growth over |s| that is no rounding
 constexpr double kDistinct = 1e-10;  ///< relative gap of singular values that may be cut through
 constexpr double kClear = 1.1;       ///< times the target: a clear violation on one sample
 constexpr double kDigits = 1e-11;    ///< of the peaks: possible loss of unpivoted elimination
-/// Fraction of the lowest pole: samples begin below it (Band::start is half of it) if the band
-/// begins at 0.
-constexpr double kFromZero = 2e-6;
 
 /// Rows and columns `list` of a part.
 SpectralPart select(const SpectralPart& p, const std::vector<Index>& list) {
@@ -49,9 +45,10 @@ class Judge {
       : lowest_(lowest(split, samples)), samples_(samples) {}
   bool is_silent(const SpectralPart& p) const {
     const bool is_zero = p.A.cwiseAbs().maxCoeff() < 0.5 * lowest_;  // distinct from all others
-    if (is_zero && samples_.omega.front() <= kFromZero * lowest_)
+    // Samples begin at kStart if the band begins at 0.
+    if (is_zero && samples_.omega.front() <= 2 * kStart * lowest_)
       return size(p, lowest_) <= kSilent;
-    if (p.A.trace() > kUnstable * p.A.norm()) return false;
+    if (p.A.trace() > kUndamped * p.A.norm()) return false;
     double worst = 0;
     for (const Complex& s : samples_.s) worst = std::max(worst, size(p, s));
     return worst <= kSilent;
@@ -148,7 +145,7 @@ Balanced::Balanced(const StateSpace& model, const Split& split, const Samples& s
 int Balanced::unstable() const {
   int count = 0;
   for (const Complex& p : split_.poles)
-    if (p.real() > kUnstable * std::abs(p)) count += p.imag() > 0 ? 2 : 1;
+    if (p.real() > kUndamped * std::abs(p)) count += p.imag() > 0 ? 2 : 1;
   return count;
 }
 

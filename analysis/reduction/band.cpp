@@ -56,7 +56,7 @@ double start_of(const std::vector<Complex>& poles, double high) {
   double lowest = high > 0 ? high : 1;
   for (const Complex& p : poles)
     if (p != 0.0 && std::abs(p) < lowest) lowest = std::abs(p);
-  return 1e-6 * lowest;
+  return kStart * lowest;
 }
 
 Band band_of(const System& system, const Scene& scene, const Whole& w) {
@@ -77,7 +77,7 @@ Band band_of(const System& system, const Scene& scene, const std::vector<Complex
                  two = integrals.C * integrals.A * integrals.B;
   for (Index i = 0; i < one.rows(); ++i)
     for (Index m = 0; m < one.cols(); ++m)
-      if (std::abs(one(i, m)) > 1e-12 * size(i, m) || two(i, m) != 0)
+      if (std::abs(one(i, m)) > kNothing * size(i, m) || two(i, m) != 0)
         refuse_integral(system, "an integral", i, m);
   band.start = start_of(poles, band.high);
   return band;

@@ -20,8 +20,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kInSpan = 1e-7;  ///< remainder of a vector in the span of other ports
-
 using linalg::at;
 
 /// A body in fewer coordinates: eta = V eta_r.
@@ -157,7 +155,7 @@ MatrixXd static_vectors(const Shared& body, const std::vector<Index>& gone) {
   const Eigen::JacobiSVD<MatrixXd> svd(S.leftCols(used), Eigen::ComputeThinU);
   const VectorXd& sigma = svd.singularValues();
   Index rank = 0;
-  while (rank < sigma.size() && sigma(rank) > kInSpan * sigma(0)) ++rank;
+  while (rank < sigma.size() && sigma(rank) > linalg::kInSpan * sigma(0)) ++rank;
   return svd.matrixU().leftCols(rank);
 }
 

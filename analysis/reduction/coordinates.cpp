@@ -14,7 +14,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kSymmetric = 1e-7;  ///< of G, relative to its diagonal: rounding of an elimination
 constexpr const char* kWayOut =
     "remove controllers and filters from the scene (their signals become inputs and outputs), or "
     "give a spring its own joint";

@@ -9,6 +9,10 @@
 /// The second-order form that the states of a passive structure have. For the library's own files.
 namespace titop::detail {
 
+/// Of G, relative to its diagonal, and of other numbers that a structure has twice: rounding of an
+/// elimination.
+inline constexpr double kSymmetric = 1e-7;
+
 /// Coordinates q (each with its rate) of a structure: qdd = -G (K q + D qd) + B u with G = M^-1,
 /// y = C_q q + C_v qd + direct u. The first n_elastic coordinates have stiffness, the others none:
 /// of those only the rows G K and G D are known, which suffice.

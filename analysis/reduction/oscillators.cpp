@@ -22,9 +22,6 @@ constexpr double kTerms = 10;
 /// Of two columns of B, in roundings of their cross product: they move the part in one direction.
 constexpr double kOneDirection = 8 * linalg::kEpsilon;
 
-/// The least number of full precision.
-constexpr double kLeast = std::numeric_limits<double>::min();
-
 /// A part in coordinate and rate, z = T x.
 struct Oscillator {
   double stiffness = 0, damping = 0;
@@ -39,7 +36,8 @@ std::optional<RowVector2d> unmoved(const MatrixXd& B) {
   const Eigen::Vector2d b = B.col(largest) / B.col(largest).cwiseAbs().maxCoeff();
   for (Index j = 0; j < B.cols(); ++j) {
     // Columns of any size, whose product may be no number.
-    const Eigen::Vector2d c = B.col(j) / std::max(B.col(j).cwiseAbs().maxCoeff(), kLeast);
+    const Eigen::Vector2d c =
+        B.col(j) / std::max(B.col(j).cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
     const double one = b(0) * c(1), other = b(1) * c(0);
     if (std::abs(one - other) > kOneDirection * (std::abs(one) + std::abs(other)))
       return std::nullopt;

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <numbers>
 #include <titop/analysis/reduction/phase_grid.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::detail {
 namespace {
@@ -8,9 +9,12 @@ namespace {
 using Complex = std::complex<double>;
 using std::numbers::pi;
 
+constexpr double kOff = 1e-12;      ///< of half the band: a pole on it moves off it
+constexpr double kSettled = 1e-14;  ///< of a half turn: a point has its digits
+
 /// z with |z| < 1 and x = (z + 1/z) / 2: where the outside of [-1, 1] is the inside of a circle.
 Complex inside(Complex x) {
-  if (x.imag() == 0 && std::abs(x.real()) <= 1) x += Complex(0, 1e-12);
+  if (x.imag() == 0 && std::abs(x.real()) <= 1) x += Complex(0, kOff);
   const Complex r = std::sqrt(x - 1.0) * std::sqrt(x + 1.0);
   const Complex z = x - r, other = x + r;
   // The smaller root, from the larger one: no cancellation.
@@ -49,7 +53,7 @@ struct Phase {
       before = step;
       step = good ? newton : (low + high) / 2 - t;
       t += step;
-      if (std::abs(step) <= 1e-14 * pi) break;
+      if (std::abs(step) <= kSettled * pi) break;
     }
     return t;
   }
@@ -62,7 +66,7 @@ std::vector<double> phase_grid(const PhaseBand& band, double step) {
   Phase phase{{}, band.far};
   for (const Complex& p : band.poles) phase.z.push_back(inside((p - middle) / half));
   const double total = phase.at(pi);
-  const int count = std::max(2, static_cast<int>(std::ceil(total / step * (1 + 1e-9))));
+  const int count = std::max(2, static_cast<int>(std::ceil(total / step * linalg::kTie)));
   std::vector<double> points(static_cast<std::size_t>(count) + 1);
   double t = 0;
   for (int i = 0; i <= count; ++i) {

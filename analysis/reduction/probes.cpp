@@ -6,6 +6,7 @@
 #include <numbers>
 #include <titop/analysis/reduction/oscillators.hpp>
 #include <titop/analysis/reduction/probes.hpp>
+#include <titop/analysis/reduction/ray.hpp>
 #include <titop/compiler/system/compile_graph.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/support/parallel.hpp>
@@ -18,9 +19,9 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
-constexpr double kDamping = 0.05;    ///< of the ray that modes are judged on
-constexpr double kLowest = 1e-2;     ///< of the band's upper end: below it vectors are exact
-constexpr double kSmallPair = 1e-6;  ///< pairs this far below their row and column are negligible
+constexpr double kDamping = 0.05;  ///< of the ray that modes are judged on
+constexpr double kLowest = 1e-2;   ///< of the band's upper end: below it vectors are exact
+constexpr double kStatic = 1e-4;   ///< of the lowest mode: below it nothing moves
 
 using linalg::at;
 
@@ -113,7 +114,7 @@ std::vector<Complex> ray(const Scene& scene, const std::vector<BlockModes>& mode
   if (high == 0) {  // static gain: so far below all modes that nothing moves
     high = HUGE_VAL;
     for (const BlockModes& m : modes)
-      high = std::min(high, 1e-4 * std::sqrt(m.stiffness.minCoeff()));
+      high = std::min(high, kStatic * std::sqrt(m.stiffness.minCoeff()));
   }
   const double low = std::max(2 * std::numbers::pi * scene.band_hz[0], kLowest * high);
   const int count = 1 + static_cast<int>(std::ceil(std::log(high / low) / (2 * damping)));
@@ -152,7 +153,7 @@ MatrixXd peaks(const std::vector<MatrixXcd>& H, Index outputs) {
   if (!(all > 0)) return MatrixXd::Ones(peak.rows(), peak.cols());
   const Eigen::VectorXd row = peak.rowwise().maxCoeff();
   const Eigen::RowVectorXd column = peak.colwise().maxCoeff();
-  peak = peak.cwiseMax(kSmallPair * row * column / all);
+  peak = peak.cwiseMax(kNearlyZero * row * column / all);
   return (peak.array() > 0).select(peak, all);
 }
 

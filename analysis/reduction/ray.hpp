@@ -14,6 +14,9 @@ inline constexpr double kNearlyZero = 1e-6;
 /// Accuracy of the transfers that errors are measured against: kEnough of compiler/solve.
 inline constexpr double kOfTransfer = 1e-12;
 
+/// Of the lowest frequency of a model above 0: Band::start.
+inline constexpr double kStart = 1e-6;
+
 /// Ends of the band [rad/s] of the scene. A model with motions without stiffness cannot be
 /// evaluated at 0: samples below `start` are taken at `start`, 1e-6 of the lowest frequency above
 /// 0, where errors equal those at 0 to six digits (both models contain these motions).

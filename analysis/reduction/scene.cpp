@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <titop/analysis/reduction/ray.hpp>
 #include <titop/analysis/reduction/remove_signals.hpp>
 #include <titop/analysis/reduction/scene.hpp>
 #include <titop/graph/linalg/index.hpp>
@@ -9,7 +10,7 @@
 namespace titop::detail {
 namespace {
 
-constexpr double kLeastAccuracy = 2e-12;  ///< twice the share of rounding in a bound
+constexpr double kLeastAccuracy = 2 * kOfTransfer;  ///< half of it is left to rounding
 
 using linalg::at;
 
@@ -129,7 +130,7 @@ void check(const Scene& scene) {
   if (!(scene.accuracy >= kLeastAccuracy && scene.accuracy <= 1))
     refuse(fmt::format("the scene's accuracy is {}", scene.accuracy),
            fmt::format("give a relative error between {:.0e} and 1", kLeastAccuracy));
-  if (!(scene.damping_floor >= 1e-6 && scene.damping_floor <= 0.5))
+  if (!(scene.damping_floor >= kUndamped && scene.damping_floor <= 0.5))
     refuse(fmt::format("the scene's damping floor is {}", scene.damping_floor),
            "give a damping ratio between 1e-6 and 0.5");
   if (scene.whole_up_to < 1)

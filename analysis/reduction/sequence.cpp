@@ -5,6 +5,7 @@
 #include <numbers>
 #include <titop/analysis/reduction/sequence.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <utility>
 
 namespace titop::detail {
@@ -16,8 +17,9 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kDependent = 1e-7;  ///< remainder of a column that is dependent on the others
-constexpr double kTie = 1e-6;        ///< errors that count as equal: the first is taken
+constexpr double kTie = 1e-6;           ///< errors that count as equal: the first is taken
+constexpr double kParallel = 1 - 1e-9;  ///< cosine: an output's modal vector is that of an input
+constexpr double kStalls = 0.95;        ///< of the error before: columns have not helped
 
 using linalg::at;
 
@@ -35,10 +37,10 @@ bool collocated(const Whole& w) {
   for (Index i = 0; i < w.ca.rows(); ++i) {
     const VectorXd c = reading(w, i);
     double best = c.isZero(0) ? 1 : 0;
-    for (Index m = 0; m < w.b.cols() && best < 1 - 1e-9; ++m)
+    for (Index m = 0; m < w.b.cols() && best < kParallel; ++m)
       if (const double size = c.norm() * w.b.col(m).head(n).norm(); size > 0)
         best = std::max(best, std::abs(c.dot(w.b.col(m).head(n))) / size);
-    if (best < 1 - 1e-9) return false;
+    if (best < kParallel) return false;
   }
   return true;
 }
@@ -125,7 +127,7 @@ bool Sequence::stalled() const {
   const std::size_t patience = collocated_ ? columns : 2 * columns;  // two steps to a pair
   if (steps_.size() <= patience) return false;
   const Step& before = steps_[steps_.size() - 1 - patience];
-  return steps_.back().kept == before.kept && steps_.back().error > 0.95 * before.error;
+  return steps_.back().kept == before.kept && steps_.back().error > kStalls * before.error;
 }
 
 bool Sequence::extend(const WorstPair& worst) {
@@ -163,7 +165,7 @@ bool Sequence::add(VectorXd column) {
   for (int twice = 0; twice < 2; ++twice) {
     column -= W_ * (W_.transpose() * column);
     const double left = column.norm();
-    if (left < kDependent) return false;
+    if (left < linalg::kInSpan) return false;
     column /= left;
   }
   W_.conservativeResize(Eigen::NoChange, W_.cols() + 1);

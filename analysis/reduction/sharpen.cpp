@@ -32,16 +32,18 @@ Complex pole(double lambda, double d) { return {-d / 2, std::sqrt(lambda - d * d
 /// The pole near a guess with a relative error of about 1e-7; none if the function is not that of
 /// one pole there.
 std::optional<Complex> find_pole(const System& system, const PortPair& pair, Complex guess) {
-  constexpr double kNear = 1e-6;  // relative distance of the first two points
+  constexpr double kNear = 1e-6;   // relative distance of the first two points
+  constexpr double kOdd = 0.1;     // their values differ in sign alone: one pole between them
+  constexpr double kLast = 1e-15;  // a step in the last place
   Complex a = guess * (1 + kNear), b = guess * (1 - kNear);
   Complex fa = inverse(system, pair, a), fb = inverse(system, pair, b);
-  if (!(std::abs(fa + fb) <= 0.1 * std::abs(fa - fb))) return std::nullopt;
+  if (!(std::abs(fa + fb) <= kOdd * std::abs(fa - fb))) return std::nullopt;
   for (int step = 0; step < 4 && fa != fb; ++step) {
     const Complex next = b - fb * (b - a) / (fb - fa);
     if (!(std::abs(next - guess) <= kNear * std::abs(guess))) return std::nullopt;
     a = b, fa = fb;
     b = next;
-    if (std::abs(b - a) <= 1e-15 * std::abs(b)) break;
+    if (std::abs(b - a) <= kLast * std::abs(b)) break;
     fb = inverse(system, pair, b);
     if (fb == 0.0) break;
   }

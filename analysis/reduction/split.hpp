@@ -10,6 +10,9 @@ namespace titop::detail {
 /// Damping ratio below which a pole counts as undamped.
 inline constexpr double kUndamped = 1e-6;
 
+/// Of its terms: an entry of the integrals that is 0, up to rounding of the separation.
+inline constexpr double kNothing = 1e-12;
+
 /// A separate part: the sum of all parts is the whole model.
 struct SpectralPart {
   Eigen::MatrixXd A, B, C;

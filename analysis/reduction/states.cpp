@@ -24,13 +24,13 @@ using Eigen::VectorXd;
 RealModes integrators(const MatrixXd& N) {
   const Index n = N.rows();
   if (n == 0) return {MatrixXd(0, 0), {}, {}};
-  if (!(N * N).isZero(1e-12 * N.squaredNorm()))
+  if (!(N * N).isZero(kNothing * N.squaredNorm()))
     throw Error(Code::singular,
                 "the reduced system has a triple integrator, which is no block of 2 x 2",
                 "take state_space()");
   const Eigen::JacobiSVD<MatrixXd> svd(N, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Index pairs = 0;
-  while (pairs < n && svd.singularValues()(pairs) > 1e-12 * svd.singularValues()(0)) ++pairs;
+  while (pairs < n && svd.singularValues()(pairs) > kNothing * svd.singularValues()(0)) ++pairs;
   // States that are neither a rate nor its position: rows of the null space without the range.
   MatrixXd used(n, 2 * pairs);
   used << svd.matrixU().leftCols(pairs), svd.matrixV().leftCols(pairs);

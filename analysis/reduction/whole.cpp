@@ -18,6 +18,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+constexpr double kCoupled = 1e-10;  ///< entry of Z between two modes, on their own scales
 constexpr double kSeen = 1e-12;  ///< of a port's sensitivity to all modes: less is rounding
 constexpr double kLeak = 3e-9;   ///< the same with closed chains, which have dependent coordinates
 
@@ -114,7 +115,7 @@ MatrixXd rest(const System& system, const Whole& w) {
 bool is_diagonal(const MatrixXd& Z) {
   for (Index i = 0; i < Z.rows(); ++i)
     for (Index j = 0; j < i; ++j)
-      if (std::abs(Z(i, j)) > 1e-10 * std::sqrt(Z(i, i)) * std::sqrt(Z(j, j))) return false;
+      if (std::abs(Z(i, j)) > kCoupled * std::sqrt(Z(i, i)) * std::sqrt(Z(j, j))) return false;
   return true;
 }
 

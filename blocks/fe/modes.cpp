@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <set>
 #include <titop/blocks/fe/clamped.hpp>
@@ -10,6 +9,7 @@
 #include <titop/blocks/fe/mesh_checks.hpp>
 #include <titop/blocks/fe/mode_damping.hpp>
 #include <titop/graph/error.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 
 /// modal_data: from the matrices of a mesh to its clamped modes.
@@ -42,7 +42,7 @@ void require_stiffness(const Clamped& c, const SymmetricModes& modes) {
   const MatrixXd size = c.K.cwiseAbs() * modes.V.cwiseAbs();
   for (Index k = 0; k < modes.lambda.size(); ++k) {
     const double terms = modes.V.col(k).cwiseAbs().dot(size.col(k));
-    if (modes.lambda(k) > 64 * std::numeric_limits<double>::epsilon() * terms) continue;
+    if (modes.lambda(k) > linalg::kProductRounding * terms) continue;
     Index row = 0;
     modes.V.col(k).cwiseAbs().maxCoeff(&row);
     refuse_mechanism(c, row);
@@ -154,8 +154,7 @@ MatrixXd unit_loads(const Clamped& c, const std::string& parent, const std::stri
 }
 
 /// Columns of X made M-orthonormal, the one with the largest remainder first. A column with a
-/// remainder below 1e-7 is a combination of the others to within the static response's own
-/// accuracy.
+/// remainder below kInSpan is a combination of the others.
 MatrixXd independent(MatrixXd X, const MatrixXd& M) {
   const auto norms = [&] { return VectorXd((X.cwiseProduct(M * X)).colwise().sum().cwiseSqrt()); };
   const VectorXd size = norms();
@@ -165,7 +164,7 @@ MatrixXd independent(MatrixXd X, const MatrixXd& M) {
   while (X.cols() > 0) {
     Index next = 0;
     const double left = norms().maxCoeff(&next);
-    if (!(left > 1e-7)) break;
+    if (!(left > linalg::kInSpan)) break;
     VectorXd q = X.col(next) / left;
     q -= Q * (Q.transpose() * (M * q));  // once more: the first pass leaves rounding / left
     q /= std::sqrt(q.dot(M * q));

@@ -20,6 +20,9 @@ inline constexpr double kDoubleRoot = 64 * kHalfDigits;
 /// Rounding of a component of an axis (a unit vector) after some rotations, with room for axes of
 /// twelve typed digits: a smaller component is 0.
 inline constexpr double kAxisRounding = 1e-12;
+/// Remainder of a unit vector beside others: if it is smaller the vector is in their span, to
+/// within the digits of a static response.
+inline constexpr double kInSpan = 1e-7;
 
 /// Numbers read from a text file have some six digits: a motion of a point below this share of its
 /// others is 0.
