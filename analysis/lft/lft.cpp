@@ -120,7 +120,8 @@ detail::Structured small_model(const StateSpace& opened, const std::vector<int>&
                                const std::vector<Delta>& deltas) {
   const StateSpace whole = normalised(opened, deltas, sizes);
   detail::Structured small = detail::reduced(whole, sizes);
-  if (difference(whole, sizes, small.m, small.sizes) <= detail::kClose) return small;
+  constexpr double kSame = 1e-9;
+  if (difference(whole, sizes, small.m, small.sizes) <= kSame) return small;
   return {whole, sizes, small.margin};
 }
 

@@ -19,8 +19,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kCoupled = 1e-10;  ///< entry of Z between two modes, on their own scales
-constexpr double kSeen = 1e-12;  ///< of a port's sensitivity to all modes: less is rounding
-constexpr double kLeak = 3e-9;   ///< the same with closed chains, which have dependent coordinates
+constexpr double kSeen = 1e-12;     ///< of a port's sensitivity to all modes: less is rounding
+constexpr double kLeak = 3e-9;  ///< the same with closed chains, which have dependent coordinates
 
 using linalg::at;
 
