@@ -28,7 +28,8 @@ class F06Assembly {
                    .about = tables_.about,
                    .rigid = tables_.rigid,
                    .weight = tables_.weight,
-                   .bulk = std::move(tables_.bulk)};
+                   .bulk = std::move(tables_.bulk),
+                   .ends = tables_.ends};
     const auto n = std::ssize(tables_.eigenvalues);
     result.modes.omega.resize(n), result.modes.mass.resize(n);
     for (Index k = 0; const auto& [mode, e] : tables_.eigenvalues) {
@@ -137,19 +138,6 @@ std::string ask(const std::string& parent = "g") {
       parent);
 }
 
-/// Tables without which there is no body, with the request that prints each.
-void require_tables(const F06File& file, const std::string& parent) {
-  const auto require = [&](bool there, const char* table, const char* request) {
-    if (!there)
-      refuse_file(file.name, fmt::format("it has no table {}, which {} prints", table, request),
-                  ask(parent));
-  };
-  require(!file.modes.shapes.empty(), "REAL EIGENVECTOR", "VECTOR(PRINT)=ALL");
-  require(file.factors.has_value(), "MODAL PARTICIPATION FACTORS", "MEFFMASS(PARTFAC)=YES");
-  require(file.rigid || file.weight, "A-SET RIGID BODY MASS MATRIX", "MEFFMASS(SUMMARY)=YES");
-  require(!file.forces.empty(), "FORCES OF SINGLE-POINT CONSTRAINT", "SPCFORCES(PRINT)=ALL");
-}
-
 constexpr double kSameSquares = 1e-5;  ///< two roundings to seven digits, and that of the square
 
 /// Of modes of mass 1. Their rows in another unit, or of another run, would not fit.
@@ -208,9 +196,24 @@ std::vector<Grid> f06_grids(const F06File& file) {
   return detail::grids_in(echo_of(file));
 }
 
+std::vector<std::string> f06_missing(const F06File& file) {
+  std::vector<std::string> missing;
+  const auto need = [&](bool there, const char* table) {
+    if (!there) missing.emplace_back(table);
+  };
+  need(!file.modes.shapes.empty(), "REAL EIGENVECTOR, which VECTOR(PRINT)=ALL prints");
+  need(file.factors.has_value(), "MODAL PARTICIPATION FACTORS, which MEFFMASS(PARTFAC)=YES prints");
+  need(file.rigid || file.weight,
+       "A-SET RIGID BODY MASS MATRIX, which MEFFMASS(SUMMARY)=YES prints");
+  need(!file.forces.empty(),
+       "FORCES OF SINGLE-POINT CONSTRAINT, which SPCFORCES(PRINT)=ALL prints");
+  return missing;
+}
+
 ModalData f06_modal_data(const F06File& file, const std::vector<Grid>& grids,
                          const std::string& parent, const std::vector<std::string>& children) {
-  require_tables(file, parent);
+  if (const auto missing = f06_missing(file); !missing.empty())
+    refuse_file(file.name, "it has no table " + missing[0], ask(parent));
   require_squares(file);
   detail::ClampedRun run{.file = file.name,
                          .modes = file.modes,

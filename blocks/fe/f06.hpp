@@ -31,6 +31,7 @@ struct F06File {
   std::optional<F06Mass> weight = {};  ///< GRID POINT WEIGHT GENERATOR, in units of weight
   std::string bulk = {};               ///< SORTED BULK DATA ECHO, its cards
   double wtmass = 1;                   ///< PARAM,WTMASS of the echo: mass of a unit of weight
+  bool ends = false;                   ///< END OF JOB: the run has printed all its tables
 };
 
 /// Tables of one subcase, over any number of pages, with titles of any text. Eigenvalues before the
@@ -46,6 +47,9 @@ F06File read_f06(const std::filesystem::path& path);
 /// Positions and frames of the grids of the file's own bulk data echo. Throws bad_file without one,
 /// and the errors of `read_grids`.
 std::vector<Grid> f06_grids(const F06File& file);
+
+/// Tables without which `f06_modal_data` refuses, each with the request that prints it.
+std::vector<std::string> f06_missing(const F06File& file);
 
 /// Modal data of a body that the run has clamped at grid `parent` alone, like `op2_modal_data`.
 /// `grids`: positions and frames, from the bulk data. L_P is the table MODAL PARTICIPATION FACTORS.

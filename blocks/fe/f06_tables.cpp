@@ -108,6 +108,8 @@ class F06Reader {
       begin(line, *next, found);
     } else if (contains(text, "FATAL MESSAGE")) {
       mistake(line, "a run without errors: see its message");
+    } else if (contains(text, "* * * END OF JOB * * *")) {
+      tables.ends = true;
     } else if (contains(text, "REFERENCE POINT")) {
       reference(line, found);
     } else if (contains(text, "BEFORE AUGMENTATION")) {

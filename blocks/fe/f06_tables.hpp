@@ -29,7 +29,8 @@ struct F06Tables {
   ByNumber factors, effective;
   int about = 0;  ///< grid of the reference point of factors and rigid; 0: the origin
   std::optional<F06Mass> rigid, weight;
-  std::string bulk;  ///< cards of the sorted echo
+  std::string bulk;   ///< cards of the sorted echo
+  bool ends = false;  ///< END OF JOB
 };
 
 /// Adds rows that do not fit their table, and a fatal message of the run, to `mistakes`.

@@ -155,6 +155,8 @@ class Importer {
     if (all.weight)
       tell("mass by the grid point weight generator, in units of weight: {:.7g}",
            all.weight->value(0, 0));
+    for (const std::string& table : f06_missing(all)) tell("no table {}", table);
+    if (!all.ends) warn({"no END OF JOB: the run or the file may have been cut short"});
     clamped_run(all.modes, [&] {
       const fs::path bulk = all.bulk.empty() ? bulk_file(kBulkFiles) : options_.grids;
       const std::vector<Grid> grids = bulk.empty() ? f06_grids(all) : read_grids(bulk);

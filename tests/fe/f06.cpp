@@ -278,6 +278,15 @@ TEST_CASE("import of an f06: positions from its echo, beside it, or from --grids
   CHECK(listed.ports == std::vector<std::string>{"7", "9"});
   CHECK(has_line(listed.text, {"modes: 2", "7 digits"}));
   CHECK(has_line(listed.text, {"at rest", "7"}));
+  CHECK(listed.text.find("no table") == std::string::npos);
+  CHECK(has_line(listed.text, {"warning", "END OF JOB"}));
+  folder.write("whole.f06",
+               text + "1                                        * * * END OF JOB * * *\n");
+  CHECK(fe::import_body(folder.path / "whole.f06").text.find("END OF JOB") == std::string::npos);
+  folder.write("few.f06", TipMass().f06({.vectors = false, .factors = false}));
+  const std::string few = fe::import_body(folder.path / "few.f06").text;
+  CHECK(has_line(few, {"no table REAL EIGENVECTOR", "VECTOR(PRINT)=ALL"}));
+  CHECK(has_line(few, {"no table MODAL PARTICIPATION FACTORS", "MEFFMASS(PARTFAC)=YES"}));
   const fe::ImportOptions options{
       .parent = "7", .children = {"9"}, .units = {.length = 1e-3}, .modes = {.xi = {0.01}}};
   const fe::Import found = fe::import_body(folder.path / "beam.f06", options);
