@@ -47,7 +47,8 @@ void require_same_mass(const Mesh& mesh, const Clamped& c, const Matrix6& given)
       const auto name = [](Index k) { return component_name(static_cast<int>(k)); };
       throw Error(
           Code::bad_value,
-          fmt::format("the rigid mass that is given (ModeOptions::rigid, Mesh::rigid) has {:.6g} "
+          fmt::format("the rigid mass that is given (ModeOptions::rigid, Mesh::rigid, titop import "
+                      "--mass) has {:.6g} "
                       "for {}, {} about the parent, where mesh {} has {:.6g}",
                       given(i, j), name(i), name(j), mesh.name, c.D_P(i, j)),
           "give mass, centre of mass and inertia of the whole body, in the units of the mesh, as "

@@ -57,9 +57,9 @@ class Importer {
     result_.text += fmt::format(text, std::forward<T>(values)...) + "\n";
   }
 
-  void refuse(const TakenOptions& taken) const {
-    refuse_others(options_, taken, file_.filename().string());
-  }
+  std::string name() const { return file_.filename().string(); }
+
+  void refuse(const TakenOptions& taken) const { refuse_others(options_, taken, name()); }
 
   /// The one that is given, or one of the same name beside the file; empty if there is none.
   fs::path bulk_file(const std::vector<const char*>& extensions = {".asm"}) const {
@@ -95,13 +95,14 @@ class Importer {
   /// Six rows for each grid of the bulk data.
   Mesh six_rows_each(const std::vector<Op4Matrix>& all) {
     const Names names = list(all);
-    const auto [stiffness, mass] = chosen_pair(options_, names);
+    const auto [stiffness, mass] = chosen_pair(options_, names, name());
     const Op4Matrix &K = find_matrix(all, stiffness), &M = find_matrix(all, mass);
     const fs::path bulk = bulk_file();
     if (bulk.empty())
       throw Error(
           Code::bad_file,
-          fmt::format("{} does not say which row is which grid", file_.filename().string()),
+          fmt::format("{} has {} ({} x {}) and {}, and does not say which row is which grid",
+                      name(), K.name, K.value.rows(), K.value.cols(), M.name),
           "give its bulk data (ImportOptions::grids; titop import --grids FILE.asm): Nastran "
           "writes them by EXTSEOUT(ASMBULK,EXTBULK,MATOP4=31)");
     const std::vector<Grid> grids = read_grids(bulk);
@@ -125,7 +126,7 @@ class Importer {
           return name == "KAA" || name == "KXX" || name == "KGG";
         })) {
       refuse({.ports = true, .units = true, .matrices = true, .modes = true, .xi = true});
-      const auto [stiffness, mass] = chosen_pair(options_, names);
+      const auto [stiffness, mass] = chosen_pair(options_, names, name());
       const GridMatrices m = op2_matrices(all, stiffness, mass);
       return use(mesh_of(m, with_rows(op2_grids(all), m)));
     }
@@ -180,7 +181,7 @@ class Importer {
   Mesh grids_of_dmig() {
     const Names names = dmig_names(file_);
     tell("matrices: {}", titop::detail::some_names(names));
-    const auto [stiffness, mass] = chosen_pair(options_, names);
+    const auto [stiffness, mass] = chosen_pair(options_, names, name());
     const GridMatrices m = read_dmig(file_, stiffness, mass);
     const fs::path bulk = bulk_file();
     tell("{}, {}: {} rows, {:.3g} digits", stiffness, mass, m.dofs.size(), m.digits);
@@ -197,6 +198,12 @@ class Importer {
   Mesh calculix() {
     refuse({.ports = true, .units = true, .modes = true, .xi = true});
     const CalculixFiles files = calculix_files(fs::path(file_).replace_extension());
+    for (const fs::path& one : {files.stiffness, files.mass, files.dofs, files.deck})
+      if (std::error_code ignored; !fs::exists(one, ignored))
+        throw Error(Code::bad_file,
+                    fmt::format("{} is one of four files of CalculiX, of which {} is missing",
+                                name(), one.filename().string()),
+                    "SOLVER=MATRIXSTORAGE writes .sti, .mas and .dof beside the deck .inp");
     CalculixDeck deck = read_calculix_deck(files.deck);
     const auto& [length, mass, time] = options_.units;
     if (deck.least_E) *deck.least_E *= mass / (length * time * time);
@@ -211,6 +218,9 @@ class Importer {
   void use(const Mesh& mesh) {
     tell("mesh {}: {} points, {} rows, {:.3g} digits", mesh.name, mesh.points.size(),
          mesh.dofs.size(), mesh.digits);
+    const auto& [length, mass, time] = options_.units;
+    if (length == 1 && mass == 1 && time == 1)
+      tell("taken as m, kg, s (ImportOptions::units; --units)");
     tell_mass(mesh);
     for (const MeshPoint& point : mesh.points)
       if (may_be_port(mesh, point)) result_.ports.push_back(point.name);

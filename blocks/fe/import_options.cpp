@@ -33,7 +33,8 @@ void refuse_others(const ImportOptions& given, const TakenOptions& taken, const 
 }
 
 std::pair<std::string, std::string> chosen_pair(const ImportOptions& options,
-                                                const std::vector<std::string>& there) {
+                                                const std::vector<std::string>& there,
+                                                const std::string& file) {
   if (!options.stiffness.empty() || !options.mass.empty()) return {options.stiffness, options.mass};
   constexpr std::array<std::pair<const char*, const char*>, 5> pairs = {
       {{"KAA", "MAA"}, {"KXX", "MXX"}, {"KAAX", "MAAX"}, {"KGG", "MGG"}, {"K", "M"}}};
@@ -48,8 +49,9 @@ std::pair<std::string, std::string> chosen_pair(const ImportOptions& options,
   if (found.size() == 1) return result;
   throw Error(
       Code::unknown_name,
-      found.empty() ? "the file has no pair of stiffness and mass that is known by name"
-                    : "the file has more than one pair of stiffness and mass",
+      fmt::format("{} has {} pair of stiffness and mass{}", file,
+                  found.empty() ? "no" : "more than one",
+                  found.empty() ? " that is known by name" : ""),
       fmt::format("name them (ImportOptions::stiffness, mass; titop import --matrices K,M); "
                   "its matrices are {}",
                   titop::detail::some_names(there)));

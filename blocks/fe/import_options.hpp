@@ -22,9 +22,10 @@ struct TakenOptions {
 void refuse_others(const ImportOptions& options, const TakenOptions& taken,
                    const std::string& file);
 
-/// Names of stiffness and mass among those of the file. Throws unknown_name.
+/// Names of stiffness and mass among those of `file`. Throws unknown_name.
 std::pair<std::string, std::string> chosen_pair(const ImportOptions& options,
-                                                const std::vector<std::string>& there);
+                                                const std::vector<std::string>& there,
+                                                const std::string& file);
 
 /// One damping ratio for all modes, or one per mode; none: unchanged. Throws size.
 void set_damping(const std::vector<double>& xi, ModalData& data);

@@ -8,6 +8,7 @@
 #include <titop/blocks/fe/modal_checks.hpp>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/rounding.hpp>
+#include <titop/graph/support/some_names.hpp>
 
 namespace titop::fe {
 
@@ -166,9 +167,11 @@ std::size_t find_point(const Mesh& mesh, const std::string& name) {
   std::string known;
   for (const MeshInterface& interface : mesh.interfaces)
     known += (known.empty() ? "" : ", ") + interface.name;
+  if (!known.empty()) known = "its interfaces are " + known + "; ";
+  std::vector<std::string> points;
+  for (const MeshPoint& point : mesh.points) points.push_back(point.name);
   throw Error(Code::unknown_name, fmt::format("mesh {} has no point {}", mesh.name, name),
-              known.empty() ? std::string("it has no interfaces, only its points' own names")
-                            : "its interfaces are " + known);
+              known + "its points are " + titop::detail::some_names(points));
 }
 
 MatrixXd rigid_motions(const Mesh& mesh, const Vector3d& P) {
@@ -210,7 +213,8 @@ std::array<Index, 6> interface_rows(const Mesh& mesh, const std::string& name,
   }
   if (missing.empty()) return rows;
   std::string hint = planar ? "the whole mesh leaves these directions out: give the rigid mass "
-                              "matrix about the parent (ModeOptions::rigid), and the body is rigid "
+                              "matrix about the parent (ModeOptions::rigid; titop import --mass), "
+                              "and the body is rigid "
                               "in them"
                             : "tie it to a node with rotations (a rigid body element) in the "
                               "finite-element program";

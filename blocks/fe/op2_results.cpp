@@ -3,6 +3,7 @@
 #include <cmath>
 #include <titop/blocks/fe/op2_results.hpp>
 #include <titop/blocks/fe/text_file.hpp>
+#include <titop/graph/support/some_names.hpp>
 
 namespace titop::fe {
 
@@ -34,6 +35,13 @@ std::string ask(const std::string& parent = "g") {
       parent);
 }
 
+template <class T>
+std::string names(const std::vector<T>& all) {
+  std::vector<std::string> names;
+  for (const T& one : all) names.push_back(one.name);
+  return names.empty() ? "none" : titop::detail::some_names(names);
+}
+
 /// The only table of this name.
 const Op2Table& table(const Op2File& file, const std::string& name) {
   const Op2Table* found = nullptr;
@@ -44,7 +52,9 @@ const Op2Table& table(const Op2File& file, const std::string& name) {
                   "run one METHOD in one subcase, and write it to a file of its own");
     found = &t;
   }
-  if (!found) refuse_file(file.name, fmt::format("it has no table {}", name), ask());
+  if (!found)
+    refuse_file(file.name, fmt::format("it has no table {}, but {}", name, names(file.tables)),
+                ask());
   return *found;
 }
 
@@ -136,7 +146,8 @@ const Op4Matrix& summary_matrix(const Op2File& file, const std::string& name,
                                 const std::string& parent) {
   for (const Op4Matrix& m : file.matrices)
     if (m.name == name) return find_matrix(file.matrices, name);
-  refuse_file(file.name, fmt::format("it has no matrix {}", name), ask(parent));
+  refuse_file(file.name, fmt::format("it has no matrix {}, but {}", name, names(file.matrices)),
+              ask(parent));
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ TEST_CASE("import: a planar model takes the mass of the whole body") {
                                     card("MAAX", 1, 1, 1, 1, 3) + card("MAAX", 2, 1, 2, 1, 3));
   Run r = shell.titop("import rod.pch --parent 1 --children 2 -o rod.json");
   CHECK(r.code == 1);
-  CHECK(has_names(r.err, {"y, z, rx, ry, rz", "ModeOptions::rigid"}));
+  CHECK(has_names(r.err, {"y, z, rx, ry, rz", "ModeOptions::rigid", "--mass"}));
   r = shell.titop("import rod.pch --parent 1 --children 2 --mass 6 0.5 0 0 1 2 3 -o rod.json");
   CHECK(r.code == 0);
   CHECK(shell.titop("check rod.json").code == 0);

@@ -47,6 +47,7 @@ TEST_CASE("DMIG without positions, CalculiX and CSV") {
       wing, {.parent = "1010", .units = {.length = 0.0254, .mass = 175.12683524647636}});
   REQUIRE(punch.body);
   CHECK(punch.ports.size() == 71);
+  CHECK(punch.text.find("--units") == std::string::npos);
   CHECK(has_line(punch.text, {"statics", "1010", "not rigid by"}));
 
   const std::string beam = kData + "/calculix_beam/beam_free_mat.sti";
@@ -168,6 +169,16 @@ TEST_CASE("without a parent, positions by statics are from a grid that gives the
   const fe::Import found = fe::import_body(wing);
   CHECK(found.ports.size() == 71);
   CHECK(has_line(found.text, {"statics", "not rigid by"}));
+  CHECK(has_line(found.text, {"m, kg, s", "--units"}));
+}
+
+TEST_CASE("a file of CalculiX without the others names the one that is missing") {
+  const titop_test::Folder folder;
+  const std::string from = kData + "/calculix_beam/beam_free_mat";
+  for (const char* ending : {".sti", ".dof", ".inp"})
+    std::filesystem::copy_file(from + ending, folder.path / ("beam" + std::string(ending)));
+  check_refused([&] { fe::import_body(folder.path / "beam.sti"); }, Code::bad_file,
+                {"beam.sti", "beam.mas", "MATRIXSTORAGE"});
 }
 
 TEST_CASE("other files are refused with the output to request from the program") {
@@ -182,10 +193,14 @@ TEST_CASE("other files are refused with the output to request from the program")
   folder.write("m.op4.gz", std::string("\x1f\x8b\x08\0\0rubbish", 12));
   check_refused([&] { fe::import_body(folder.path / "m.op4.gz"); }, Code::bad_file,
                 {"m.op4.gz", "gzip", "gunzip"});
+  folder.write("odd.pch", "DMIG    KODD    0       6       2       0\n");
+  check_refused([&] { fe::import_body(folder.path / "odd.pch"); }, Code::unknown_name,
+                {"odd.pch", "no pair", "--matrices", "KODD"});
   std::filesystem::copy_file(kOp4, folder.path / "alone.op4");
   check_refused([&] { fe::import_body(folder.path / "alone.op4"); }, Code::bad_file,
-                {"alone.op4", "--grids", "ASMBULK"});
+                {"alone.op4", "KXX (46 x 46)", "MXX", "--grids", "ASMBULK"});
   check_refused([&] { fe::import_body(kOp4, {.stiffness = "KZZ", .mass = "MXX"}); },
                 Code::unknown_name, {"KZZ", "KXX"});
-  check_refused([&] { fe::import_body(kOp4, {.parent = "4"}); }, Code::unknown_name, {"4"});
+  check_refused([&] { fe::import_body(kOp4, {.parent = "4"}); }, Code::unknown_name,
+                {"point 4", "3, 11, 19, 27"});
 }

@@ -247,13 +247,15 @@ TEST_CASE("a missing table is named with the line that writes it") {
   const fe::Op2File file = read(w.bytes);
   CHECK(fe::find_matrix(file.matrices, "KAA").value == MatrixXd::Identity(2, 2));
   check_refused([&] { fe::op2_modes(file); }, Code::bad_file,
-                {"m.op2", "LAMA", "VECTOR(SORT1,REAL)=ALL"});
+                {"m.op2", "LAMA, but none", "VECTOR(SORT1,REAL)=ALL"});
   check_refused([&] { fe::op2_grids(file); }, Code::bad_file, {"GEOM1", "PARAM,POSTEXT,YES"});
   std::string other = modes({}, false);
   for (std::size_t at; (at = other.find("MPFACS")) != std::string::npos;)
     other.replace(at, 6, "MPFACX");
   check_refused([&] { fe::op2_modal_data(read(other), "7", {}); }, Code::bad_file,
-                {"MPFACS", "GRID=7", "PARTFAC"});
+                {"MPFACS, but RBMASSS, MPFACX", "GRID=7", "PARTFAC"});
+  check_refused([&] { fe::op2_modes(read(modes({}, false, {.shapes = "OUGX"}))); }, Code::bad_file,
+                {"OUGV1, but GEOM1, LAMA, OUGX, OQG1"});
   check_refused([&] { fe::op2_modal_data(read(modes({}, false)), "7", {"8"}); }, Code::unknown_name,
                 {"grid 8"});
 }
