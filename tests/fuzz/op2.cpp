@@ -10,5 +10,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fuzz::refuses_or_reads([&] { titop::fe::op2_modes(file); });
     fuzz::refuses_or_reads([&] { titop::fe::op2_grids(file); });
     fuzz::refuses_or_reads([&] { titop::fe::op2_matrices(file, "KAA", "MAA"); });
+    fuzz::refuses_or_reads([&] { titop::fe::op2_modal_data(file, "1", {"3"}); });
   });
 }
