@@ -146,6 +146,11 @@ std::string point_name(const StateSpace& L, int i) {
                                           : "loop " + std::to_string(i + 1);
 }
 
+void add_warnings(Margins& m, const std::vector<Note>& notes) {
+  for (const Note& n : notes)
+    if (n.kind == Note::Kind::warning) m.warnings.push_back(n.pass + ": " + n.text);
+}
+
 }  // namespace
 
 Margins margins(const StateSpace& L, const MarginOptions& options) {
@@ -171,7 +176,10 @@ Margins margins(const StateSpace& L, const MarginOptions& options) {
 Margins margins(const ControlLoop& loop, const MarginOptions& options) {
   const StateSpace& L = loop.L.state_space();
   // Modes that the loop does not move or see would count as poles of the closed loop.
-  return margins(loop.L.order_verdict().judged ? L : minimize(L).model, options);
+  Margins m = margins(loop.L.order_verdict().judged ? L : minimize(L).model, options);
+  add_warnings(m, loop.L.notes());
+  add_warnings(m, loop.L.dense_notes());
+  return m;
 }
 
 }  // namespace titop

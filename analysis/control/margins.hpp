@@ -72,6 +72,9 @@ struct Margins {
   DiskMargin disk;                 ///< of all loops at once: at most that of each alone
   MarginAt nearest;                ///< 1/||S||_inf, of all loops at once
   std::vector<LoopMargins> loops;  ///< of each loop alone, the others closed
+  /// Of a ControlLoop: the warnings of L.log() and L.dense_log(), such as lost digits of L or
+  /// states that may be superfluous. These margins are those of L as it is: see docs/errors.md.
+  std::vector<std::string> warnings = {};
 };
 
 /// Options of `margins`.
@@ -95,10 +98,12 @@ struct MarginOptions {
 /// not finite, in more than one loop, in a loop with a direct term, or of more than 1e5 quarter
 /// turns where L matters, and for more than kMostStatesOfHinf states (norm_hinf). O(1000 n^3).
 Margins margins(const StateSpace& L, const MarginOptions& options = {});
-/// Of ControlLoop::L.state_space(): of the minimal L, with the names of the loop points.
+/// Of ControlLoop::L.state_space(): of the minimal L, with the names of the loop points, and the
+/// warnings of its log.
 Margins margins(const ControlLoop& loop, const MarginOptions& options = {});
 
-/// A table, with dB and degrees; if the loop is not stable, the counts of unstable poles instead.
+/// A table, with dB and degrees; if the loop is not stable, the counts of unstable poles instead;
+/// then the warnings.
 std::string to_string(const Margins& margins);
 
 }  // namespace titop

@@ -39,9 +39,7 @@ std::string text_of(const LoopMargins& m) {
   return text + disk_text(m.disk) + nearest_text(m.nearest);
 }
 
-}  // namespace
-
-std::string to_string(const Margins& m) {
+std::string results(const Margins& m) {
   const NyquistCount& n = m.nyquist;
   if (!m.stable)
     return fmt::format(
@@ -56,6 +54,14 @@ std::string to_string(const Margins& m) {
   if (m.loops.size() > 1)
     text += "all loops at once\n" + disk_text(m.disk) + nearest_text(m.nearest);
   for (const LoopMargins& one : m.loops) text += text_of(one);
+  return text;
+}
+
+}  // namespace
+
+std::string to_string(const Margins& m) {
+  std::string text = results(m);
+  for (const std::string& w : m.warnings) text += fmt::format("warning of L: {}\n", w);
   return text;
 }
 

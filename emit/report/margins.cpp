@@ -117,13 +117,22 @@ std::vector<double> frequencies_of_loop(const ControlLoop& cut) {
   return sweep_frequencies(subject(cut.L, plain));
 }
 
+std::string warnings_of_loop(const Margins& m) {
+  if (m.warnings.empty()) return {};
+  std::string text = "<ul class=\"verdicts\">\n";
+  for (const std::string& w : m.warnings)
+    text += fmt::format("<li class=\"open\">L, warning of {}</li>\n", escaped(w));
+  return text + "</ul>\n";
+}
+
 std::string section_of(const Subject& s, const std::string& point) {
   const std::string head = fmt::format("<h3>Loop point {}</h3>\n", escaped(point));
   try {
     const ControlLoop cut = loop(s.system, point);
     const Margins m = margins(cut);
-    return head + (m.stable ? table_of(m) : unstable(m)) + "<div class=\"figures\">\n" +
-           figure(nyquist_plot(cut, m, frequencies_of_loop(cut))) + "</div>\n";
+    return head + (m.stable ? table_of(m) : unstable(m)) + warnings_of_loop(m) +
+           "<div class=\"figures\">\n" + figure(nyquist_plot(cut, m, frequencies_of_loop(cut))) +
+           "</div>\n";
   } catch (const Error& error) {
     return head +
            fmt::format("<p class=\"note\">No margins: {}</p>\n", escaped_lines(error.what()));

@@ -192,3 +192,27 @@ TEST_CASE("a loop point in a diagram file, and in the drawing") {
   CHECK(loop_points(compile(again)) == std::vector<std::string>{"torque"});
   CHECK(to_dot(d).find("torque") != std::string::npos);
 }
+
+TEST_CASE("margins carry the warnings of L, and print them") {
+  // Two gains in a loop of their own, 1 - delta around: 1/delta in all. With a law of gain delta
+  // and an integrator L is 1/s; of the loop's 16 digits those of delta are lost.
+  for (const double delta : {0.5, std::ldexp(1, -30)}) {
+    Diagram d{"amplifier"};
+    auto r = d.input("r");
+    auto first = d.add("first", Lti{.D = MatrixXd::Constant(1, 1, 1)});
+    auto second = d.add("second", Lti{.D = MatrixXd::Constant(1, 1, 1 - delta)});
+    auto x = d.add("x", Integrator{});
+    first.in = r - d.loop_point("law", delta * x.out) + second.out;
+    second.in = first.out;
+    x.in = first.out;
+    d.output("x") = x.out;
+    const Margins m = margins(loop(compile(d), "law"));
+    CHECK(m.stable);
+    CHECK(std::abs(m.loops.at(0).phase.value - std::acos(-1.0) / 2) <= 1e-6);
+    const bool lost = delta < 0.1;
+    REQUIRE(m.warnings.empty() == !lost);
+    const std::string text = to_string(m);
+    CHECK((text.find("\nwarning of L: certify: the loop at first.in has margin ") !=
+           std::string::npos) == lost);
+  }
+}

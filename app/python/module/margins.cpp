@@ -48,6 +48,7 @@ void bind_margins(py::module_& m) {
       .def_readonly("disk", &Margins::disk, "Of all loops at once.")
       .def_readonly("nearest", &Margins::nearest, "Of all loops at once.")
       .def_readonly("loops", &Margins::loops, "Of each loop alone.")
+      .def_readonly("warnings", &Margins::warnings, "Of the log of a ControlLoop's L.")
       .def("__str__", [](const Margins& a) { return to_string(a); });
   m.def(
       "margins",
