@@ -36,7 +36,7 @@ a { color: var(--accent); }
 .tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(150px, 1fr)); gap: 12px;
   margin: 18px 0; }
 .tile { background: var(--card); border: 1px solid var(--rule); border-radius: 8px; padding: 10px 14px; }
-.tile b { display: block; white-space: nowrap; font-size: 24px; line-height: 1.25; font-variant-numeric: tabular-nums; }
+.tile b { display: block; white-space: nowrap; font-size: clamp(16px, 4.8vw, 24px); line-height: 1.25; font-variant-numeric: tabular-nums; }
 .tile span { color: var(--soft); font-size: 13px; }
 .verdicts { list-style: none; margin: 0 0 14px; padding: 0; }
 .verdicts li { padding: 5px 0 5px 30px; position: relative; max-width: 100ch; }
@@ -53,9 +53,10 @@ td { padding: 4px 12px 4px 0; border-bottom: 1px solid var(--rule); vertical-ali
   overflow-wrap: anywhere; }
 .n { text-align: right; white-space: nowrap; overflow-wrap: normal; }
 .n + td, .n + th { padding-left: 16px; }
+td.name:first-child { min-width: 11ch; }
 .name { font-family: "DejaVu Sans Mono", "Liberation Mono", Menlo, Consolas, monospace; font-size: 12.5px; }
 .fit { white-space: nowrap; }
-.wide { min-width: 220px; }
+.wide { min-width: 340px; }
 span.good, td.good { color: var(--good); } span.bad, td.bad { color: var(--bad); }
 .share { display: inline-block; margin: 0 14px 0 0; white-space: nowrap; }
 .bar { display: inline-block; height: 9px; background: var(--bar); border-radius: 2px;
@@ -81,6 +82,7 @@ summary { cursor: pointer; color: var(--accent); font-size: 13.5px; }
 figure.plot text { fill: var(--ink); }
 .mark { stroke: var(--c2); stroke-width: 1.8; }
 figure.plot .tick { font-size: 12px; fill: var(--soft); font-variant-numeric: tabular-nums; }
+figure.plot .over { paint-order: stroke; stroke: var(--paper); stroke-width: 3px; }
 .x-label, .y-label { font-size: 12.5px; }
 .fine, .grid, .zero, .frame, .curve { fill: none; }
 .fine { stroke: var(--fine); stroke-width: 0.7; } .grid { stroke: var(--grid); stroke-width: 0.8; }
@@ -106,8 +108,8 @@ footer { margin-top: 48px; border-top: 1px solid var(--rule); padding-top: 10px;
   .figures { grid-template-columns: 1fr 1fr; gap: 10pt; }
   figure.plot { border-color: #bbb; padding: 6pt 6pt 2pt; }
   .tiles { grid-template-columns: repeat(5, 1fr); gap: 6pt; } .tile b { font-size: 12.5pt; }
-  .tile span { font-size: 7.5pt; } .wide { min-width: 0; }
-  .table, .canvas { overflow: visible; }
+  .tile span { font-size: 7.5pt; } .wide { min-width: 0; width: 55%; }
+  .table, .canvas { overflow: visible; } th.n, .share { white-space: normal; }
   .canvas { border: 0; padding: 0; }
   svg.drawing, figure.diagram:target svg.drawing { max-width: 100%; max-height: 225mm; width: auto; }
 }

@@ -213,17 +213,31 @@ std::string grid(const Scale& across, const Scale& up, double top, int height) {
   return text;
 }
 
+std::ptrdiff_t letters(const std::string& utf8) {
+  return std::count_if(utf8.begin(), utf8.end(), [](char c) { return (c & 0xC0) != 0x80; });
+}
+
 /// Along the frame; a longer text in smaller letters.
 std::string y_label(const std::string& title, double middle, int height) {
   constexpr double kSize = 12.5, kLetter = 0.56;  // [px], mean width over size
-  const auto letters = std::count_if(title.begin(), title.end(),
-                                     [](char c) { return (c & 0xC0) != 0x80; });  // of UTF-8
-  const double fits = (height + kTop + kGap) / (kLetter * static_cast<double>(letters));
+  const double fits = (height + kTop + kGap) / (kLetter * static_cast<double>(letters(title)));
   const std::string small =
       fits >= kSize ? "" : fmt::format(R"( style="font-size:{:.1f}px")", std::max(fits, 7.0));
   return fmt::format(
       R"-(<text class="y-label"{2} x="14" y="{0}" text-anchor="middle" transform="rotate(-90 14 {0})">{1}</text>)-",
       middle, diagram::html(title), small);
+}
+
+/// Left of the frame; a longer number than fits between the label and the frame is narrowed.
+std::string y_tick(const std::string& number, double y) {
+  constexpr double kEnd = kLeft - 6, kLabelEnd = 18;
+  constexpr int kFits = 6;  // digits of 12 px
+  const std::string narrowed =
+      letters(number) <= kFits
+          ? ""
+          : fmt::format(R"( textLength="{}" lengthAdjust="spacingAndGlyphs")", kEnd - kLabelEnd);
+  return fmt::format(R"(<text class="tick" x="{}" y="{:.1f}" text-anchor="end"{}>{}</text>)", kEnd,
+                     y, narrowed, number);
 }
 
 std::string draw(const Plot& plot, const Frame& frame, const Scale& across, double top) {
@@ -243,14 +257,13 @@ std::string draw(const Plot& plot, const Frame& frame, const Scale& across, doub
   text += fmt::format(R"(</svg><rect class="frame" x="{}" y="{}" width="{}" height="{}"/>)", kLeft,
                       top, kInner, frame.height);
   for (const Tick& t : up.ticks())
-    text += fmt::format(R"(<text class="tick" x="{}" y="{:.1f}" text-anchor="end">{}</text>)",
-                        kLeft - 6, top + frame.height * (1 - up.place(t.value)) + 4, t.text);
+    text += y_tick(t.text, top + frame.height * (1 - up.place(t.value)) + 4);
   const double middle = top + frame.height / 2.0;
   for (const PlotText& t : frame.texts)
-    text +=
-        fmt::format(R"(<text class="tick" x="{:.1f}" y="{:.1f}" text-anchor="middle">{}</text>)",
-                    kLeft + kInner * across.place(t.x),
-                    top + frame.height * (1 - up.place(t.y)) + 4, diagram::html(t.text));
+    text += fmt::format(
+        R"(<text class="tick over" x="{:.1f}" y="{:.1f}" text-anchor="middle">{}</text>)",
+        kLeft + kInner * across.place(t.x), top + frame.height * (1 - up.place(t.y)) + 4,
+        diagram::html(t.text));
   return frame.y.hidden ? text : text + y_label(up.title(), middle, frame.height);
 }
 

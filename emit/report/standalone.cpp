@@ -11,6 +11,7 @@ namespace {
 /// As the page's (page.cpp), in its light colours.
 constexpr const char* kStyle =
     "text{font:13px sans-serif;fill:#1f2933}.tick{font-size:12px;fill:#52606d}"
+    ".over{paint-order:stroke;stroke:#fff;stroke-width:3px}"
     ".title{font-weight:600}path,rect{fill:none}.paper{fill:#fff}"
     ".fine{stroke:#edf1f5;stroke-width:.7}.grid{stroke:#d3dbe3;stroke-width:.8}"
     ".zero{stroke:#52606d}.frame{stroke:#52606d;stroke-width:1.1}"

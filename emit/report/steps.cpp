@@ -140,17 +140,17 @@ std::string exact_text(double error) {
   constexpr double kNone = 1e-9;
   if (error <= kNone) return "by the matrix exponential: exact at every step.";
   return fmt::format(
-      "by the matrix exponential of A, B, C, D, whose rounding changes the outputs by up to {:.1e} "
-      "of their largest values.",
-      error);
+      "by the matrix exponential of A, B, C, D, whose rounding changes the outputs by up to {} of "
+      "their largest values.",
+      number(error, 2));
 }
 
 std::string method(const Steps& all) {
   if (all.stepper == Stepper::exact) return exact_text(all.error);
   return fmt::format(
       "by the implicit midpoint rule through the factors: steps of twice the size change the "
-      "outputs by up to {:.1e} of their largest values.",
-      all.error);
+      "outputs by up to {} of their largest values.",
+      number(all.error, 2));
 }
 
 /// If the start is far larger than the rest, the frame shows the rest, and the caption gives the

@@ -16,7 +16,48 @@ bool runs(const std::string& command) {
   return std::system((command + " >/dev/null 2>&1").c_str()) == 0;
 }
 
+/// Two springs whose names are longer than a column, a law and numbers of many digits.
+Diagram long_names() {
+  Diagram d{"long names"};
+  auto u = d.input("the force that the actuator exerts");
+  auto a =
+      d.add("the inner spring of the northern wing", SpringMass{.mass = 1, .stiffness = 12345});
+  auto b =
+      d.add("the outer spring of the northern wing", SpringMass{.mass = 2, .stiffness = 0.125});
+  a.parent.accel = 0;
+  b.parent.accel = a.child.accel;
+  a.child.force = b.parent.force - u;
+  d.output("the stretch of the outer spring") = b.stretch;
+  return d;
+}
+
 }  // namespace
+
+TEST_CASE("the report is as wide as its window, and as a page of A4 between its margins") {
+  if (!runs("command -v chromium")) return titop_test::skip("Chromium is not installed");
+  const std::string page = report_html(compile(long_names()));
+  const auto with = [](std::string text, const std::string& from, const std::string& to) {
+    const std::size_t at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    return text.replace(at, from.size(), to);
+  };
+  const std::string measured =
+      with(page, "</body>",
+           "<script>onload = () => { const e = document.documentElement; document.title = 'beyond '"
+           " + (e.scrollWidth - e.clientWidth) }</script></body>");
+  const std::string paper = with(measured, "@media print", "@media all");
+  for (const auto& [text, width] :
+       {std::pair(measured, 1280), std::pair(measured, 500), std::pair(paper, 688)}) {  // 182 mm
+    CAPTURE(width);
+    const Folder folder;
+    folder.write("report.html", text);
+    CHECK(folder.run("chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage "
+                     "--hide-scrollbars --user-data-dir=profile --virtual-time-budget=2000 "
+                     "--window-size=" +
+                     std::to_string(width) + ",2000 --dump-dom report.html") == 0);
+    CHECK(folder.read("log.txt").find("<title>beyond 0</title>") != std::string::npos);
+  }
+}
 
 TEST_CASE("Chromium shows the report without an error, and prints it") {
   if (!runs("command -v chromium")) return titop_test::skip("Chromium is not installed");

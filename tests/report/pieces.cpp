@@ -143,6 +143,18 @@ TEST_CASE("a long label of the y axis is smaller, as long as the frame") {
   CHECK(between(figure(plot), "class=\"y-label\" style=\"font-size:", "px\"").size() == 1);
 }
 
+TEST_CASE("a number that is too long for the left of the frame is narrowed") {
+  CHECK(between(figure(one_curve({0, 1}, {-1, 1})), "textLength=\"", "\"").empty());
+  for (const double low : {0.0085, 0.99985, -0.01}) {
+    const std::string text = figure(one_curve({0, 1}, {low, low + 0.0015}));
+    std::size_t longer = 0;
+    for (const std::string& tick : between(text, "class=\"tick\"", "</text>"))
+      if (tick.size() - tick.find('>') - 1 > 6) ++longer;
+    CHECK(longer > 0);
+    CHECK(between(text, "textLength=\"", "\"") == std::vector<std::string>(longer, "42"));
+  }
+}
+
 TEST_CASE("frequencies stay in the band, and are closer at the poles in it") {
   for (const double damping : {0.0, 0.05, 0.095, 0.1}) {
     CAPTURE(damping);
