@@ -133,7 +133,8 @@ StateSpace invert(const StateSpace& model, const std::vector<std::pair<int, int>
   check_numbers(out, model.D.rows(), "output");
   const EquilibratedMatrix D_oi(model.D(out, in));
   Eigen::FullPivLU<MatrixXd> lu(D_oi.matrix);
-  lu.setThreshold(1e-13);
+  constexpr double kSingular = 1e-13;  // least pivot over the largest: some digits remain
+  lu.setThreshold(kSingular);
   const Eigen::Index rank = std::min(lu.rank(), rank_beyond_rounding(model.D, out, in));
   if (rank < std::ssize(pairs))
     throw Error(Code::improper,

@@ -52,7 +52,7 @@ namespace {
 
 void check_rotation(const Matrix3d& T) {
   const double off = (T.transpose() * T - Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(off <= linalg::kOrthonormal))  // also catches not-a-number
+  if (!(off <= linalg::kMatrixDigits))  // also catches not-a-number
     throw Error(Code::not_a_rotation,
                 fmt::format("the matrix is not orthogonal: T'T differs from I by {:.2g}", off),
                 "its columns must be the unit vectors of frame a in frame b; at most 1e-9 may be "
@@ -68,7 +68,8 @@ Rotation Rotation::of_steps(std::vector<Step> steps) {
   for (const Step& step : steps)
     if (const auto* T = std::get_if<Matrix3d>(&step))
       check_rotation(*T);
-    else if (const double off = std::get<Turn>(step).axis.norm() - 1; !(std::abs(off) <= 1e-9))
+    else if (const double off = std::get<Turn>(step).axis.norm() - 1;
+             !(std::abs(off) <= linalg::kMatrixDigits))
       throw Error(Code::not_a_rotation, fmt::format("an axis of length {}", off + 1),
                   "give a unit vector");
   return Rotation(NamedSteps{std::move(steps)});

@@ -7,10 +7,10 @@ namespace titop::loops {
 namespace {
 
 using Eigen::MatrixXd;
-using linalg::kOrthonormal;
 
 bool is_rotation(const Matrix3d& Q) {
-  return Q.determinant() > 0 && (Q.transpose() * Q - Matrix3d::Identity()).norm() <= kOrthonormal;
+  return Q.determinant() > 0 &&
+         (Q.transpose() * Q - Matrix3d::Identity()).norm() <= linalg::kMatrixDigits;
 }
 
 /// Nearest to M = sum of s' c over the rows (Kabsch): M has one singular value for every direction
@@ -35,7 +35,7 @@ std::optional<Matrix3d> common_rotation(const MatrixXd& S, const MatrixXd& c) {
                                             : nearest(linear + angular);
   MatrixXd turned(S.rows(), 6);
   turned << S.leftCols(3) * Q, S.rightCols(3) * Q;
-  if ((turned - c).cwiseAbs().maxCoeff() <= kOrthonormal) return Q;
+  if ((turned - c).cwiseAbs().maxCoeff() <= linalg::kMatrixDigits) return Q;
   return std::nullopt;
 }
 

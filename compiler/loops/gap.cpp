@@ -20,7 +20,7 @@ MatrixXd moved_by_angles(const Form& form, const VectorXd& scale) {
       Eigen::RowVectorXd v = matrix.col(j).cwiseProduct(scale).transpose();
       const double size = v.norm();
       for (int twice = 0; twice < 2; ++twice) v -= (v * basis.transpose()) * basis;
-      if (!(v.norm() > 1e-9 * size)) continue;
+      if (!(v.norm() > kExactGap * size)) continue;
       basis.conservativeResize(basis.rows() + 1, Eigen::NoChange);
       basis.bottomRows(1) = v.normalized();
     }

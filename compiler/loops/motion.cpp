@@ -22,7 +22,7 @@ using linalg::at;
 bool has_orthonormal_rows(const MatrixXd& m) {
   return m.rows() <= m.cols() &&
          (m * m.transpose() - MatrixXd::Identity(m.rows(), m.rows())).cwiseAbs().maxCoeff() <=
-             linalg::kOrthonormal;
+             linalg::kMatrixDigits;
 }
 
 }  // namespace

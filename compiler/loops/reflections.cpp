@@ -1,15 +1,10 @@
 #include <algorithm>
 #include <titop/compiler/loops/reflections.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::loops {
 
 using Eigen::Index;
-
-namespace {
-
-constexpr double kEqual = 1 - 1e-6;
-
-}  // namespace
 
 double Reflections::largest(const std::vector<int>& columns) const {
   double result = 0;
@@ -30,7 +25,8 @@ double Reflections::take(const std::vector<int>& columns, double least, const Pi
       best = std::max(best, own[i] = worth(columns[i], least));
     for (const int c : choice.rivals) rival = std::max(rival, worth(c, 0));
     if (!(best > choice.share * rival)) return largest(columns);
-    const auto first = std::ranges::find_if(own, [&](double w) { return w >= kEqual * best; });
+    const auto first =
+        std::ranges::find_if(own, [&](double w) { return w >= linalg::kEqual * best; });
     const int pivot = columns[static_cast<std::size_t>(first - own.begin())];
     weakest_ = std::min(weakest_, norm(pivot));
     reflect(pivot);

@@ -18,9 +18,7 @@ using Eigen::VectorXd;
 using linalg::at;
 using Indices = std::vector<Index>;
 
-constexpr double kOneNumber =
-    100 * kEpsilon;               ///< of a matrix's norm: as near as that, poles are one
-constexpr double kWidest = 1e-3;  ///< likewise: spread of a multiple pole by rounding
+constexpr double kWidest = 1e-3;  ///< of a matrix's norm: spread of a multiple pole by rounding
 
 std::vector<std::vector<int>> find_components(const MatrixXd& A) {
   std::vector<std::vector<int>> result;
@@ -83,7 +81,7 @@ void add_component(const MatrixXd& scaled, const std::vector<int>& states, PoleC
 /// True if poles of both may be the same one.
 bool meet(const PoleClusters& p, const PoleCluster& a, const PoleCluster& b) {
   const auto size = [&](const PoleCluster& c) { return p.size[at(p.component[at(c.poles[0])])]; };
-  const double same = kOneNumber * (size(a) + size(b)) + a.radius + b.radius;
+  const double same = linalg::kOneNumber * (size(a) + size(b)) + a.radius + b.radius;
   for (const Index i : a.poles)
     for (const Index j : b.poles)
       if (std::abs(p.e.values(i) - p.e.values(j)) <=

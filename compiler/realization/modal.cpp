@@ -3,6 +3,7 @@
 #include <titop/compiler/realization/modal.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop {
 namespace {
@@ -61,7 +62,7 @@ void set_stiffness(const MatrixXd& S, SecondOrder& form) {
     }
   form.S = (S + S.transpose()) / 2;
   form.skew = (S - S.transpose()) / 2;
-  form.found = form.asymmetry <= kAsymmetry;
+  form.found = form.asymmetry <= linalg::kMatrixDigits;
 }
 
 void by_diagonal(const MatrixXd& K, const MatrixXd& Z, SecondOrder& form) {

@@ -6,9 +6,6 @@
 
 namespace titop {
 
-/// Largest asymmetry of a matrix that is symmetric up to rounding, over the sizes of its diagonal.
-constexpr double kAsymmetry = 1e-9;
-
 /// The second-order form of a model whose states are coordinates and their rates (rates_of), if it
 /// has one: x = [q; qdot] in some order, qddot = -K q - Z qdot with K symmetric after q = D y.
 struct SecondOrder {

@@ -17,7 +17,7 @@ void turn_by_damping(const MatrixXd& Z, GradedModes& e) {
     const MatrixXd in = V.transpose() * Z * V;
     const double size = in.cwiseAbs().maxCoeff(),
                  skew = (in - in.transpose()).cwiseAbs().maxCoeff();
-    if (skew <= kAsymmetry * size) V = (V * eigh((in + in.transpose()) / 2).V).eval();
+    if (skew <= linalg::kMatrixDigits * size) V = (V * eigh((in + in.transpose()) / 2).V).eval();
   }
 }
 

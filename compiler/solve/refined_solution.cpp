@@ -3,20 +3,21 @@
 #include <titop/compiler/solve/evaluate.hpp>
 #include <titop/compiler/solve/refined_solution.hpp>
 #include <titop/compiler/solve/scalar.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/support/steady_random.hpp>
 
 /// Error estimate and refinement at one s.
 namespace titop::detail {
 namespace {
 
+/// If steps shrink by less, refinement ends: at the rounding of T, or without a result if that is
+/// not reached.
+using linalg::kShrinks;
 using solve::in_double;
 using solve::lifted;
 
 /// Most steps of refinement: at kShrinks each they lead to 1e-18.
 constexpr int kSteps = 30;
-/// If steps shrink by less, refinement ends: at the rounding of T, or without a result if that is
-/// not reached.
-constexpr double kShrinks = 0.25;
 /// If the first step changes no block of the unknowns by more, convergence is certain by then;
 /// otherwise a later step must confirm it, up to kUntil after the first.
 constexpr double kPlain = 1e-9;

@@ -3,6 +3,7 @@
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/converged.hpp>
 #include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/linalg/wide.hpp>
 
 namespace titop::linalg {
@@ -67,7 +68,6 @@ template <class Lu>
 double refine(const Lu& lu, const MatrixXcl& E, const MatrixXcl& F, MatrixXcl& z) {
   using Scalar = typename Lu::Scalar;
   constexpr int kSteps = 12;
-  constexpr double kShrinks = 0.25;  // a slower one is no convergence
   double before = HUGE_VAL;
   for (int step = 0; step < kSteps; ++step) {
     const MatrixXcl more =

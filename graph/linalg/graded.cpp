@@ -4,6 +4,7 @@
 #include <numeric>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/graded.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <vector>
 
 namespace titop {
@@ -13,8 +14,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
-constexpr double kRigid = 1e-13;  ///< of a diagonal entry, of lambda_max: smaller is rounding
+constexpr double kRigid = 1e-13;    ///< of a diagonal entry, of lambda_max: smaller is rounding
+constexpr double kOfTerms = 1e-12;  ///< an entry of a congruence, of its terms, likewise
 
 /// L with S = L L', rows in their places, columns by falling pivots. `least` is the least pivot
 /// over its diagonal entry of S. Empty if that is only rounding: a rigid motion.
@@ -35,7 +36,7 @@ enum class Angle { fine, good, open };
 /// Rotates two columns towards orthogonality; returns their angle before.
 Angle turn(MatrixXd& L, Index i, Index j) {
   const double a = L.col(i).squaredNorm(), b = L.col(j).squaredNorm(), c = L.col(i).dot(L.col(j));
-  const double tolerance = std::sqrt(static_cast<double>(L.rows())) * kEps;
+  const double tolerance = std::sqrt(static_cast<double>(L.rows())) * linalg::kEpsilon;
   if (std::abs(c) <= tolerance * L.col(i).cwiseAbs().dot(L.col(j).cwiseAbs())) return Angle::fine;
   const double z = (b - a) / (2 * c);
   const double t = std::copysign(1.0, z) / (std::abs(z) + std::hypot(1.0, z));
@@ -79,8 +80,9 @@ GradedModes eigh_graded(const MatrixXd& S) {
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
                    [&](Index a, Index b) { return lambda(a) < lambda(b); });
-  GradedModes result{
-      {lambda(order), L(Eigen::all, order)}, true, static_cast<double>(n) * kEps / least};
+  GradedModes result{{lambda(order), L(Eigen::all, order)},
+                     true,
+                     static_cast<double>(n) * linalg::kEpsilon / least};
   for (Index k = 0; k < n; ++k) {
     auto v = result.modes.V.col(k);
     v.normalize();
@@ -98,10 +100,10 @@ std::optional<VectorXd> diagonal_in(const GradedModes& of, const MatrixXd& Z) {
   const MatrixXd terms = V.cwiseAbs().transpose() * Z.cwiseAbs() * V.cwiseAbs();
   for (Index j = 0; j < in.cols(); ++j)
     for (Index i = 0; i < in.rows(); ++i)
-      if (i != j && !(std::abs(in(i, j)) <= (of.graded ? 1e-12 * terms(i, j) : 1e-13 * size)))
+      if (i != j && !(std::abs(in(i, j)) <= (of.graded ? kOfTerms * terms(i, j) : kRigid * size)))
         return std::nullopt;
   return VectorXd(
-      (in.diagonal().array().abs() <= 1e-13 * terms.diagonal().array()).select(0, in.diagonal()));
+      (in.diagonal().array().abs() <= kRigid * terms.diagonal().array()).select(0, in.diagonal()));
 }
 
 bool symmetric_in(const GradedModes& of, const MatrixXd& S, const MatrixXd& skew) {
@@ -111,7 +113,8 @@ bool symmetric_in(const GradedModes& of, const MatrixXd& S, const MatrixXd& skew
   for (Index j = 0; j < in.cols(); ++j)
     for (Index i = 0; i < in.rows(); ++i) {
       const double own = std::sqrt(std::abs(lambda(i))) * std::sqrt(std::abs(lambda(j)));
-      if (!(std::abs(in(i, j)) <= std::max(1e-12 * terms(i, j), 1e-9 * own))) return false;
+      if (!(std::abs(in(i, j)) <= std::max(kOfTerms * terms(i, j), linalg::kMatrixDigits * own)))
+        return false;
     }
   return true;
 }

@@ -23,6 +23,9 @@ inline constexpr double kAxisRounding = 1e-12;
 /// Remainder of a unit vector beside others: if it is smaller the vector is in their span, to
 /// within the digits of a static response.
 inline constexpr double kInSpan = 1e-7;
+/// A matrix is symmetric, semidefinite or orthonormal to this share of its diagonal: nine typed
+/// digits, or the rounding of an elimination.
+inline constexpr double kMatrixDigits = 1e-9;
 
 /// Numbers read from a text file have some six digits: a motion of a point below this share of its
 /// others is 0.
@@ -30,13 +33,18 @@ inline constexpr double kTextDigits = 1e-6;
 /// Times one sample of rounding, which may be small by chance: a smaller number may be rounding
 /// alone. Measured: up to 6 for true zeros, 1e5 and more for others.
 inline constexpr double kNoise = 1e3;
-/// Rows of unit vectors, as of a rotation, are off by less: typed numbers of nine digits.
-inline constexpr double kOrthonormal = 1e-9;
 /// A number is larger than another beyond rounding: otherwise the first in the graph is taken, so
 /// that a choice does not depend on the last bits.
 inline constexpr double kTie = 1 + 1e-9;
+/// Of the largest: those that are as large count as equal, where eigenvectors and factors have lost
+/// some digits; the first is taken.
+inline constexpr double kEqual = 1 - 1e-6;
 /// A result that its data, or one step of refinement, change by more has not one digit.
 inline constexpr double kOneDigit = 0.1;
+/// Steps of refinement that shrink by less do not converge.
+inline constexpr double kShrinks = 0.25;
+/// Of the norm of a matrix: poles as near as that are one number.
+inline constexpr double kOneNumber = 100 * kEpsilon;
 
 /// Relative: frequencies, poles and dampings this near are equal. The vectors of two such modes
 /// have no digits of their own [Golub, Van Loan 8.1.3].

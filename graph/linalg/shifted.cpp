@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/linalg/schur.hpp>
 #include <titop/graph/linalg/shifted.hpp>
@@ -11,10 +10,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
-
-/// The error after a step of refinement is about the square of its change: at most the
-/// rounding unit.
-constexpr double kMoved = kHalfDigits;
 
 double largest_change(const MatrixXcd& change, const MatrixXcd& of) {
   double moved = 0;
@@ -64,8 +59,7 @@ Solution ShiftedSolver::solve(const UncoupledPart& p, std::complex<double> s, do
   MatrixXcd shifted = -p.T;
   shifted.diagonal().array() += s;
   const Eigen::VectorXd distance = shifted.diagonal().cwiseAbs();
-  const double rounding =
-      static_cast<double>(n) * std::numeric_limits<double>::epsilon() * (p.size + std::abs(s));
+  const double rounding = static_cast<double>(n) * kEpsilon * (p.size + std::abs(s));
   if (distance.minCoeff() > rounding) {
     const auto upper = shifted.triangularView<Eigen::Upper>();
     const MatrixXcd z = p.Q * upper.solve(p.R);
@@ -74,7 +68,8 @@ Solution ShiftedSolver::solve(const UncoupledPart& p, std::complex<double> s, do
     const MatrixXcd scaled = p.scale.cwiseInverse().asDiagonal() * residual;
     const MatrixXcd change = p.Q * upper.solve(p.Q.adjoint() * scaled);
     const double moved = largest_change(change, z);
-    if (moved <= kMoved) {
+    // The error after a step of refinement is about the square of its change.
+    if (moved <= kHalfDigits) {
       X += p.scale.asDiagonal() * change;
       nearest = std::min(nearest, distance.minCoeff());
       farthest = std::max(farthest, distance.maxCoeff());

@@ -67,6 +67,7 @@ VectorXd by_logarithms(MatrixXd& A) {
 /// less than 5 percent, in at most 20 sweeps.
 void sweep(MatrixXd& A, VectorXd& d) {
   constexpr int kSweeps = 20;
+  constexpr double kGains = 0.95;  // of the sums: a factor of 2 that decreases them less is none
   for (int k = 0; k < kSweeps; ++k) {
     bool changed = false;
     for (Index i = 0; i < A.rows(); ++i) {
@@ -74,7 +75,7 @@ void sweep(MatrixXd& A, VectorXd& d) {
                    row = A.row(i).cwiseAbs().sum() - own;
       if (!(column > 0 && row > 0)) continue;
       const double f = power_of_two(std::log2(row / column) / 2);
-      if (column * f + row / f >= 0.95 * (column + row)) continue;
+      if (column * f + row / f >= kGains * (column + row)) continue;
       scale(A, d, i, f);
       changed = true;
     }

@@ -21,6 +21,8 @@ constexpr int kMost = 128;  ///< rows
 using SmallMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kSmall, kSmall>;
 
+constexpr double kSettled = 1e-3;  ///< relative: bounds of a radius that is known
+
 /// From M^k, k = 1, 2, 4 ... 1024: the row sums v of M^k give max (M v)_i / v_i, never below the
 /// radius [Collatz 1942]; if that stays loose, |M^1024|^(1/1024), the norm's own factor n having
 /// become n^(1/1024).
@@ -34,7 +36,8 @@ double perron_by_squaring(const SmallMatrix& M) {
     if (!(size > 0)) return 0;
     if (v.minCoeff() > 0) {
       const SmallVector grown = M.lazyProduct(v).cwiseQuotient(v);
-      if (grown.maxCoeff() - grown.minCoeff() <= 1e-3 * grown.maxCoeff()) return grown.maxCoeff();
+      if (grown.maxCoeff() - grown.minCoeff() <= kSettled * grown.maxCoeff())
+        return grown.maxCoeff();
     }
     log_scale += weight * std::log(size);
     if (step == 10) break;
@@ -49,7 +52,7 @@ using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::R
 /// Result of power iteration.
 struct Powers {
   double radius = 0;     ///< from above
-  bool settled = false;  ///< known to 1e-3
+  bool settled = false;  ///< known to kSettled
 };
 
 /// Power iteration [Collatz 1942]; `times`: M v. The diagonal of |M^-1| |M| is 1 or more: the
@@ -61,7 +64,7 @@ Powers perron_by_powers(Eigen::Index n, int steps, Times times) {
     w = times(v);
     grown = w.cwiseQuotient(v);
     const double most = grown.maxCoeff();
-    if (most - grown.minCoeff() <= 1e-3 * most) return {most, true};
+    if (most - grown.minCoeff() <= kSettled * most) return {most, true};
     v = (w / w.maxCoeff()).cwiseMax(1e-300);
   }
   return {grown.maxCoeff(), false};

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <limits>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/linalg/schur.hpp>
 #include <titop/graph/linalg/spectral.hpp>
 
@@ -34,10 +35,7 @@ void move_up(Schur& s, Index j, Index to) {
 }
 
 /// Poles of T that are nearer than this are equal: their difference is rounding.
-double rounding_of(const MatrixXcd& T) {
-  constexpr double kOneNumber = 100;  // times the unit roundoff of |T|
-  return kOneNumber * std::numeric_limits<double>::epsilon() * T.norm();
-}
+double rounding_of(const MatrixXcd& T) { return kOneNumber * T.norm(); }
 
 /// True if the poles in [first, rest) are separate from those after them.
 bool parted(const MatrixXcd& T, Index first, Index rest, double same, double bound) {

@@ -4,6 +4,7 @@
 #include <limits>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 
 namespace titop {
@@ -48,7 +49,7 @@ MatrixXd with_signs(MatrixXd V) {
   for (Index j = 0; j < V.cols(); ++j) {
     const double largest = V.col(j).cwiseAbs().maxCoeff();
     Index i = 0;
-    while (std::abs(V(i, j)) < (1 - 1e-6) * largest) ++i;
+    while (std::abs(V(i, j)) < linalg::kEqual * largest) ++i;
     if (V(i, j) < 0) V.col(j) *= -1;
   }
   return V;
