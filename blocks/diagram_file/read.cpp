@@ -140,7 +140,7 @@ class DiagramReader {
   static Part read_part(const JsonPlace& p) {
     p.only({"part", "rows"});
     const Eigen::MatrixXd rows = p.at("rows").matrix(-1, -1);
-    if (rows.rows() == 0 || !(rows * rows.transpose()).isIdentity(linalg::kOrthonormal))
+    if (rows.rows() == 0 || !(rows * rows.transpose()).isIdentity(linalg::kMatrixDigits))
       p.at("rows").refuse("orthonormal rows, at least one");
     return {rows, p.at("part").text()};
   }
