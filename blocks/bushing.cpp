@@ -5,6 +5,7 @@
 #include <titop/blocks/bushing.hpp>
 #include <titop/blocks/specified.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/opened.hpp>
 
 namespace titop {
@@ -43,7 +44,7 @@ void check_matrix(const Matrix6& m, std::string_view subject) {
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) {
       const double scale = size(i) * size(j);
-      if (std::abs(m(i, j) - m(j, i)) > 1e-9 * std::max(scale, std::abs(m(i, j))))
+      if (std::abs(m(i, j) - m(j, i)) > linalg::kMatrixDigits * std::max(scale, std::abs(m(i, j))))
         refuse(fmt::format("not symmetric: {} and {} at ({}, {})", m(i, j), m(j, i), i + 1, j + 1),
                "give the full symmetric matrix, (x, y, z, rx, ry, rz)");
       if (scale == 0 && m(i, j) != 0)
@@ -53,7 +54,7 @@ void check_matrix(const Matrix6& m, std::string_view subject) {
       if (scale > 0) scaled(i, j) = m(i, j) / scale;
     }
   const Eigen::SelfAdjointEigenSolver<Matrix6> solver(scaled, Eigen::EigenvaluesOnly);
-  if (const double least = solver.eigenvalues()(0); least < -1e-9)
+  if (const double least = solver.eigenvalues()(0); least < -linalg::kMatrixDigits)
     refuse(fmt::format("not positive semidefinite: scaled to a diagonal of 1 its least eigenvalue "
                        "is {:.3g}",
                        least),

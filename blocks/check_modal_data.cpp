@@ -4,6 +4,7 @@
 #include <cmath>
 #include <titop/blocks/check_modal_data.hpp>
 #include <titop/blocks/fe/modal_checks.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 
 namespace titop::detail {
@@ -115,7 +116,7 @@ void check_entries(const Matrix6& D_P) {
   Eigen::Index i = 0, j = 0;
   const double off = (D_P - D_P.transpose()).cwiseAbs().maxCoeff(&i, &j);
   const int row = static_cast<int>(std::min(i, j)), column = static_cast<int>(std::max(i, j));
-  if (off > 1e-9 * D_P.cwiseAbs().maxCoeff())
+  if (off > linalg::kMatrixDigits * D_P.cwiseAbs().maxCoeff())
     throw Error(
         Code::bad_inertia,
         fmt::format("D_P is not symmetric, by {:.2g}: {:.6g} at {}, {:.6g} at {}", off,
@@ -213,12 +214,11 @@ void check_damping(const MatrixXd& Z, Eigen::Index n) {
   const Eigen::VectorXd size =
       Z.diagonal().unaryExpr([](double z) { return z != 0 ? 1 / std::sqrt(std::abs(z)) : 1.0; });
   const MatrixXd scaled = size.asDiagonal() * Z * size.asDiagonal();
-  constexpr double rounding = 1e-9;
-  if ((scaled - scaled.transpose()).cwiseAbs().maxCoeff() > rounding)
+  if ((scaled - scaled.transpose()).cwiseAbs().maxCoeff() > linalg::kMatrixDigits)
     throw Error(Code::bad_modes, "the damping matrix of the modes is not symmetric",
                 "give (Z + Z') / 2; a skew part is gyroscopic: write it with momentum()");
   const SymmetricModes m = eigh(scaled);
-  if (m.lambda(0) >= -rounding * static_cast<double>(n)) return;
+  if (m.lambda(0) >= -linalg::kMatrixDigits * static_cast<double>(n)) return;
   Eigen::Index mode = 0;
   m.V.col(0).cwiseAbs().maxCoeff(&mode);
   throw Error(Code::bad_modes,

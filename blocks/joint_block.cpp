@@ -5,6 +5,7 @@
 #include <titop/blocks/specified.hpp>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop {
 namespace {
@@ -40,7 +41,7 @@ MatrixXd twists(const std::vector<Axis>& axes, const std::vector<AxisNames>& nam
     S.col(i) = twist(axes[at(i)]);
     Vector6 rest = S.col(i);
     for (int twice = 0; twice < 2; ++twice) rest -= basis * (basis.transpose() * rest);
-    if (rest.norm() < 1e-9)
+    if (rest.norm() < linalg::kMatrixDigits)
       throw Error(Code::bad_value,
                   fmt::format("{} moves as the axes before it do already", names[at(i)].position),
                   "leave it out, or turn it: the axes of a joint must be independent");

@@ -8,14 +8,12 @@
 #include <titop/blocks/line_port.hpp>
 #include <titop/blocks/specified.hpp>
 #include <titop/graph/error.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <utility>
 
 namespace titop {
 
 namespace {
-
-constexpr double kSameLength = 1e-6;  ///< of printed coordinates
-constexpr double kSameAxis = 1e-9;    ///< of the cosine of a right angle, as of Rotation::matrix
 
 std::string list_of_shapes(const ModalLine& line) {
   std::string all;
@@ -34,7 +32,7 @@ struct Turned {
 Turned turned(const LinePort& a, const LinePort& b, const Matrix3d& T, int axis) {
   Eigen::Index to = 0;
   const double size = T.col(axis).cwiseAbs().maxCoeff(&to);
-  if (!(size >= 1 - kSameAxis))
+  if (!(size >= 1 - linalg::kMatrixDigits))
     throw Error(
         Code::bad_value,
         fmt::format("lines {} and {} meet under axes that are not parallel", a.name, b.name),
@@ -72,7 +70,7 @@ std::optional<int> deflection(const ModalLine& line) {
 bool is_held(const LinePort& a, const LinePort& b, const Matrix3d& T, const LineShape& shape) {
   if (is_rotation(shape)) return false;
   const std::optional<int> mine = deflection(a.line), other = deflection(b.line);
-  if (mine && other) return std::abs(T(*other, *mine)) < 1 - kSameAxis;
+  if (mine && other) return std::abs(T(*other, *mine)) < 1 - linalg::kMatrixDigits;
   return !has_component(b.line, turned(a, b, T, shape.component).axis);
 }
 
@@ -104,7 +102,7 @@ void require_same(const LinePort& a, const LinePort& b, const Rotation& T_ba) {
         Code::bad_value, fmt::format("lines {} and {} are both parents", a.name, b.name),
         "one of the bodies must have its line as a child: modal_data(mesh, parent, {line})");
   const double longer = std::max(a.line.length, b.line.length);
-  if (!(std::abs(a.line.length - b.line.length) <= kSameLength * longer))
+  if (!(std::abs(a.line.length - b.line.length) <= linalg::kTextDigits * longer))
     throw Error(Code::bad_value,
                 fmt::format("line {} has the length {:.9g} m, line {} {:.9g} m", a.name,
                             a.line.length, b.name, b.line.length),

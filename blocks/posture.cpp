@@ -157,11 +157,13 @@ void check_held(const KinematicLoop& loop, const End& end) {
   if (n == 0) return;
   const Eigen::JacobiSVD<MatrixXd> svd(end.J, Eigen::ComputeFullV);
   const VectorXd& s = svd.singularValues();
-  if (n <= 6 && s(n - 1) > 1e-6 * s(0)) return;
+  constexpr double kHeld = 1e-6;   // of the largest: less may be rounding of a dead centre
+  constexpr double kMoves = 1e-3;  // of the largest: joints that are named
+  if (n <= 6 && s(n - 1) > kHeld * s(0)) return;
   const VectorXd motion = svd.matrixV().col(n - 1);
   std::string names;
   for (Index c = 0; c < n; ++c)
-    if (std::abs(motion(c)) > 1e-3 * motion.cwiseAbs().maxCoeff()) {
+    if (std::abs(motion(c)) > kMoves * motion.cwiseAbs().maxCoeff()) {
       const Index i = loop.unknown[at(c)];
       names += (names.empty() ? "" : ", ") + name_of(loop.steps[at(i)], i);
     }

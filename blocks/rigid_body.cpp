@@ -9,6 +9,7 @@
 #include <titop/blocks/rigid_body.hpp>
 #include <titop/blocks/specified.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop {
 
@@ -26,20 +27,20 @@ void check_inertia(double mass, const Matrix3d& inertia) {
                 "give a mass of 0 or more");
   const double size = inertia.cwiseAbs().maxCoeff();
   const double off = (inertia - inertia.transpose()).cwiseAbs().maxCoeff();
-  if (off > 1e-9 * size)
+  if (off > linalg::kMatrixDigits * size)
     throw Error(Code::bad_inertia,
                 fmt::format("the inertia is not symmetric, by {:.2g} kg m^2", off),
                 "give the full symmetric matrix about the centre of mass");
   const Eigen::SelfAdjointEigenSolver<Matrix3d> solver((inertia + inertia.transpose()) / 2,
                                                        Eigen::EigenvaluesOnly);
   const Vector3d I = solver.eigenvalues();  // ascending
-  if (I(0) < -1e-9 * I.cwiseAbs().maxCoeff())
+  if (I(0) < -linalg::kMatrixDigits * I.cwiseAbs().maxCoeff())
     throw Error(
         Code::bad_inertia,
         fmt::format("the inertia is not positive: its smallest principal moment is {:.6g} kg m^2",
                     I(0)),
         "check the signs of the products of inertia");
-  if (I(2) > (I(0) + I(1)) * (1 + 1e-9))
+  if (I(2) > (I(0) + I(1)) * (1 + linalg::kMatrixDigits))
     throw Error(
         Code::bad_inertia,
         fmt::format(

@@ -4,6 +4,7 @@
 #include <titop/blocks/rotor.hpp>
 #include <titop/blocks/specified.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/opened.hpp>
 
 namespace titop {
@@ -21,7 +22,7 @@ void check_rotor(double mass, double axial, double transverse) {
     throw Error(Code::not_finite, given, "give finite numbers");
   if (mass < 0 || axial < 0 || transverse < 0)
     throw Error(Code::bad_inertia, given, "give a mass [kg] and inertias [kg m^2] of 0 or more");
-  if (axial > 2 * transverse * (1 + 1e-9))
+  if (axial > 2 * transverse * (1 + linalg::kMatrixDigits))
     throw Error(
         Code::bad_inertia,
         fmt::format("{}: no body has an axial inertia above twice the transverse one", given),

@@ -2,16 +2,16 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <titop/blocks/fe/coordinate_systems.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::fe::detail {
 
 namespace {
 
-constexpr std::size_t kMostNested = 1000;  ///< the search is recursive
-constexpr double kOnAxis = 16 * std::numeric_limits<double>::epsilon();  ///< of a position's terms
+constexpr std::size_t kMostNested = 1000;          ///< the search is recursive
+constexpr double kOnAxis = 16 * linalg::kEpsilon;  ///< of a position's terms
 
 /// x, y, z of coordinates of a kind.
 Vector3d rectangular(SystemKind kind, const Vector3d& p) {
@@ -98,7 +98,8 @@ const CoordinateSystems::Axes* CoordinateSystems::find(int id, std::string& why)
   open_.erase(id);
   if (!corner) return nullptr;
   const Vector3d z = corner->AB.normalized(), y = z.cross(corner->AC).normalized();
-  if (!(std::abs(y.norm() - 1) < 1e-6 && std::abs(z.norm() - 1) < 1e-6)) {
+  if (!(std::abs(y.norm() - 1) < linalg::kMatrixDigits &&
+        std::abs(z.norm() - 1) < linalg::kMatrixDigits)) {
     why = fmt::format("coordinate system {}, whose three points are on a line", id);
     return nullptr;
   }

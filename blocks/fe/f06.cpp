@@ -7,6 +7,7 @@
 #include <titop/blocks/fe/bulk_data.hpp>
 #include <titop/blocks/fe/f06_tables.hpp>
 #include <titop/blocks/fe/fortran.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::fe {
 
@@ -87,7 +88,7 @@ class F06Assembly {
     const auto begin = at, end = tables_.eigenvalues.end();
     for (const detail::F06Forces& f : tables_.forces) {
       const auto is_other = [&](double value) {
-        return !(std::abs(value - f.eigenvalue) <= 1e-6 * std::abs(f.eigenvalue));
+        return !(std::abs(value - f.eigenvalue) <= linalg::kTextDigits * std::abs(f.eigenvalue));
       };
       while (at != end && is_other(at->second.value)) ++at;
       if (at == end) {

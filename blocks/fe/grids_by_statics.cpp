@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <titop/blocks/fe/grids.hpp>
 #include <titop/blocks/fe/modal_checks.hpp>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 
 /// Rigid motions, positions and frames by statics.
@@ -52,7 +52,6 @@ namespace {
 using GridRows = std::map<int, Eigen::Matrix<double, 1, 6>>;
 
 constexpr double kLeastDigits = 1e-3;  ///< positions of fewer than three digits are of no use
-constexpr double kFree = 1e-6;         ///< resistance to rigid motion, as `modal_data` has it
 
 /// R by statics, and the errors of its rows that errors of K make.
 class Statics {
@@ -74,7 +73,7 @@ class Statics {
         solve_definite(m_.K(free_, free_), MatrixXd::Identity(n, n)).cwiseAbs();
     // Besides that of its entries the rounding of the factorisation [Higham 10.3].
     const Eigen::VectorXd root = m_.K.diagonal().cwiseAbs().cwiseSqrt();
-    const double rounding = static_cast<double>(n + 1) * std::numeric_limits<double>::epsilon();
+    const double rounding = static_cast<double>(n + 1) * linalg::kEpsilon;
     const MatrixXd off = relative_ * terms_ + rounding * root * (root.transpose() * R_.cwiseAbs());
     MatrixXd result = MatrixXd::Zero(R_.rows(), 6);
     result(free_, Eigen::all) = inverse * off(free_, Eigen::all);
@@ -91,7 +90,7 @@ class Statics {
     const double resists =
         (scale.array() > 0).select(reaction.array() / scale.array(), 0.0).maxCoeff(&row, &column);
     const double digit = std::pow(10, -m_.digits);
-    if (resists > std::max(kFree, 100 * digit))
+    if (resists > std::max(linalg::kTextDigits, 100 * digit))
       throw Error(Code::bad_modes,
                   fmt::format("the stiffness of {} resists the rigid motion of grid {} along {}, "
                               "by {:.1e} of its terms",
@@ -123,7 +122,8 @@ struct PlacedGrid {
       unsure.row(c) = errors.at(3 + c).tail<3>();
     }
     const Eigen::JacobiSVD<Matrix3d> svd(turned, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const double noise = std::max((svd.singularValues().array() - 1).abs().maxCoeff(), 1e-12);
+    const double noise =
+        std::max((svd.singularValues().array() - 1).abs().maxCoeff(), linalg::kAxisRounding);
     const double off = (turned - Matrix3d::Identity()).cwiseAbs().maxCoeff();
     if (off > std::min(10 * noise, unsure.maxCoeff()))
       frame = svd.matrixV() * svd.matrixU().transpose();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <titop/blocks/fe/mesh_checks.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 #include <vector>
 
@@ -36,7 +37,7 @@ std::optional<MassProperties> from_geometry(const Mesh& mesh) {
   for (const Dof& dof : mesh.dofs)
     if (dof.component >= kGeneralised) return std::nullopt;
   const MatrixXd masses = point_masses(mesh);
-  const double tolerance = 1e-6 * std::abs(masses.col(0).sum());
+  const double tolerance = linalg::kTextDigits * std::abs(masses.col(0).sum());
   Matrix6 D = Matrix6::Zero();
   for (Index i = 0; i < masses.rows(); ++i) {
     const auto m = masses.row(i);

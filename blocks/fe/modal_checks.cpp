@@ -7,6 +7,7 @@
 #include <numeric>
 #include <titop/blocks/fe/modal_checks.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 
 namespace titop {
@@ -26,7 +27,9 @@ double noise_of(const ModalData& data) { return 10 * std::pow(10, -data.digits);
 
 /// Mode shapes also have the rounding error of their eigenproblem, about 1e-14 of the largest
 /// entry; entries below this bound count as zero motion.
-double shape_noise(const ModalData& data) { return std::max(noise_of(data), 1e-11); }
+constexpr double kOfShapes = 1e-11;
+
+double shape_noise(const ModalData& data) { return std::max(noise_of(data), kOfShapes); }
 
 /// Reference sizes of its rows: the largest of their kind, translations or rotations, or of the
 /// other kind times (over) the distance from P.
@@ -98,11 +101,11 @@ std::string combination(const Vector6& w) {
   std::string text;
   double first = 0;
   for (int i = 0; i < 6; ++i) {
-    if (std::abs(w(i)) < 1e-6 * largest) continue;
+    if (std::abs(w(i)) < linalg::kTextDigits * largest) continue;
     if (first == 0) first = w(i);
     const double c = w(i) / first;
     if (!text.empty()) text += c < 0 ? " - " : " + ";
-    const bool one = std::abs(std::abs(c) - 1) < 1e-6;
+    const bool one = std::abs(std::abs(c) - 1) < linalg::kTextDigits;
     text += one ? component_name(i) : fmt::format("{:.3g} {}", std::abs(c), component_name(i));
   }
   return text;

@@ -24,7 +24,8 @@ namespace {
 /// Throws bad_modes if K resists rigid motion by more than its digits explain.
 void require_free(const Mesh& mesh) {
   const RigidStiffness held = rigid_stiffness(mesh);
-  const double noise = std::max({1e-6, 100 * std::pow(10, -mesh.digits), 10 * mesh.position_noise});
+  const double noise =
+      std::max({linalg::kTextDigits, 100 * std::pow(10, -mesh.digits), 10 * mesh.position_noise});
   if (held.of_terms <= noise) return;
   throw Error(
       Code::bad_modes,
@@ -82,7 +83,8 @@ MassSplit split_mass(const Clamped& c) {
 void require_unloaded(const Clamped& c, const MassSplit& split, const std::vector<Index>& loaded) {
   std::string names;
   for (const Index row : loaded)
-    if (split.Z.row(row).norm() > 1e-6) names += (names.empty() ? "" : ", ") + name_of(c, row);
+    if (split.Z.row(row).norm() > linalg::kTextDigits)
+      names += (names.empty() ? "" : ", ") + name_of(c, row);
   if (names.empty()) return;
   throw Error(Code::bad_modes,
               fmt::format("mesh {} has no mass at {}: a wrench there gives no finite acceleration",
@@ -182,10 +184,11 @@ SymmetricModes residual_modes(const Clamped& c, const SymmetricModes& kept, cons
       c.M.diagonal().unaryExpr([](double m) { return m > 0 ? 1 / std::sqrt(m) : 1.0; });
   const MatrixXd MV = c.M * kept.V;
   MatrixXd B = loads - MV * (kept.V.transpose() * loads);
+  constexpr double kCarried = 1e-9;  // of a load: the modes carry it but for their rounding
   std::vector<Index> columns;
   for (Index j = 0; j < B.cols(); ++j)
     if ((weight.asDiagonal() * B.col(j)).norm() >
-        1e-9 * (weight.asDiagonal() * loads.col(j)).norm())
+        kCarried * (weight.asDiagonal() * loads.col(j)).norm())
       columns.push_back(j);
   MatrixXd X = solve_definite(c.K, B(Eigen::all, columns));
   X -= kept.V * (MV.transpose() * X);

@@ -5,6 +5,7 @@
 #include <titop/blocks/fe/modal_checks.hpp>
 #include <titop/blocks/fe/normal_modes.hpp>
 #include <titop/graph/error.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::fe {
 
@@ -30,6 +31,7 @@ MatrixXd in_basic(const Grid& grid, MatrixXd values) {
   return values;
 }
 
+constexpr double kUnitMass = 1e-5;    ///< of printed sums
 constexpr double kSameMotion = 1e-3;  ///< of supports' forces, relative to the rigid mass
 
 /// A body accelerated by P alone has f = -omega^2 L_P' as support forces of each mode, about P: not
@@ -59,7 +61,7 @@ constexpr double kLastDigit = 1e-6;  ///< a unit of the seventh digit, of an ent
 
 void require_unit_masses(const detail::ClampedRun& run) {
   for (Index k = 0; k < run.modes.mass.size(); ++k)
-    if (!(std::abs(run.modes.mass(k) - 1) <= 1e-5))
+    if (!(std::abs(run.modes.mass(k) - 1) <= kUnitMass))
       throw Error(Code::bad_file,
                   fmt::format("{}: mode {} has the generalised mass {:.6g}, not 1", run.file, k + 1,
                               run.modes.mass(k)),
@@ -73,7 +75,8 @@ std::vector<int> grids_at_rest(const NormalModes& modes) {
   for (const auto& [grid, shape] : modes.shapes) largest = largest.cwiseMax(sizes(shape));
   std::vector<int> grids;
   for (const auto& [grid, shape] : modes.shapes)
-    if ((sizes(shape).array() <= 1e-6 * largest.array()).all()) grids.push_back(grid);
+    if ((sizes(shape).array() <= linalg::kTextDigits * largest.array()).all())
+      grids.push_back(grid);
   return grids;
 }
 

@@ -1,5 +1,7 @@
 #include "values.hpp"
 
+#include <titop/graph/linalg/rounding.hpp>
+
 #include "python.hpp"
 
 namespace titop::python {
@@ -50,10 +52,6 @@ bool has_parameter(const std::vector<Value>& values) {
   return std::any_of(values.begin(), values.end(), [](const Value& v) { return v.is_parameter(); });
 }
 
-/// Difference of two numbers that are equal but for rounding, relative to the largest entry: as for
-/// an inertia without parameters.
-constexpr double kRounding = 1e-9;
-
 /// Refuses a matrix with parameters whose entries (i, j) and (j, i) differ: the library takes one
 /// of them for both. n rows.
 void require_symmetric(const std::vector<Value>& values, std::size_t n, Code code,
@@ -64,9 +62,10 @@ void require_symmetric(const std::vector<Value>& values, std::size_t n, Code cod
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = i + 1; j < n; ++j) {
       const Value &upper = values[n * i + j], &lower = values[n * j + i];
-      const bool differ = upper.is_parameter() || lower.is_parameter()
-                              ? !same(upper, lower)
-                              : std::abs(upper.nominal() - lower.nominal()) > kRounding * size;
+      const bool differ =
+          upper.is_parameter() || lower.is_parameter()
+              ? !same(upper, lower)
+              : std::abs(upper.nominal() - lower.nominal()) > linalg::kMatrixDigits * size;
       if (differ) {
         const std::string row = std::to_string(i + 1), column = std::to_string(j + 1);
         throw Error(code,
