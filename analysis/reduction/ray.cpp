@@ -13,11 +13,11 @@ using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr double kNoPair = 1e-10;     ///< of its row and column: a pair at rounding level
-constexpr double kCancelled = 5e-14;  ///< of terms that cancel: some 200 units of the last place
-constexpr double kPoleUnits = 2;      ///< units of the last place of a pole
-constexpr int kFar = 10;              ///< poles in s^2 in place of all beyond twice the band
-constexpr double kOnePole = 1e-12;    ///< relative distance of poles that are one
+constexpr double kNoPair = 1e-10;       ///< of its row and column: a pair at rounding level
+constexpr double kOfCancelled = 5e-14;  ///< of terms that cancel: some 200 units of the last place
+constexpr double kPoleUnits = 2;        ///< units of the last place of a pole
+constexpr int kFar = 10;                ///< poles in s^2 in place of all beyond twice the band
+constexpr double kOnePole = 1e-12;      ///< relative distance of poles that are one
 
 bool equal(Complex p, Complex q) { return std::abs(p - q) <= kOnePole * std::abs(q); }
 
@@ -222,7 +222,8 @@ double nearest_pole(const Scene& scene, const Band& band, const SampledSpectrum&
 
 MatrixXd rounding(const Samples& samples, double nearest) {
   const double resonance = kPoleUnits * std::numeric_limits<double>::epsilon() / nearest;
-  return (kCancelled * samples.alike.cwiseQuotient(samples.peak)).array() + kOfTransfer + resonance;
+  return (kOfCancelled * samples.alike.cwiseQuotient(samples.peak)).array() + kOfTransfer +
+         resonance;
 }
 
 }  // namespace titop::detail
