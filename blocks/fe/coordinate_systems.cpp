@@ -97,12 +97,12 @@ const CoordinateSystems::Axes* CoordinateSystems::find(int id, std::string& why)
   const auto corner = card.grids ? by_grids(id, *card.grids, why) : by_points(card, why);
   open_.erase(id);
   if (!corner) return nullptr;
-  const Vector3d z = corner->AB.normalized(), y = z.cross(corner->AC).normalized();
-  if (!(std::abs(y.norm() - 1) < linalg::kMatrixDigits &&
-        std::abs(z.norm() - 1) < linalg::kMatrixDigits)) {
+  const Vector3d z = corner->AB.normalized(), normal = z.cross(corner->AC.normalized());
+  if (!(normal.norm() > linalg::kTextDigits)) {
     why = fmt::format("coordinate system {}, whose three points are on a line", id);
     return nullptr;
   }
+  const Vector3d y = normal.normalized();
   Axes axes{card.kind, corner->A, Matrix3d()};
   axes.columns << y.cross(z), y, z;
   return &(found_[id] = axes);

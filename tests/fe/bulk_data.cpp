@@ -118,6 +118,9 @@ TEST_CASE("mistakes in bulk data, with their lines") {
   refused(replaced(kText, "grid,12,3", "grid,12,7"), {"m.bdf:10", "coordinate system 7"});
   refused(replaced(kText, "CORD2R* 4               3", "CORD2R* 4               4"),
           {"m.bdf:11", "coordinate system 4", "itself"});
+  // The third point is three times the second, up to rounding.
+  refused("CORD2R,10,0,0.,0.,0.,0.1,0.2,0.3,+A\n+A,0.3,0.6,0.9\nGRID,1,10,1.,0.,0.\n",
+          {"m.bdf", "coordinate system 10", "on a line"});
   refused(replaced(kText, "CORD2R  3", "CORD3G  3"), {"m.bdf:10", "CORD3G", "CORD2R"});
   refused("CORD1R,5,1,2,3\nGRID,1\nGRID,2,,,,1.\nGRID,9,5\n",
           {"m.bdf:4", "grid 3 of coordinate system 5"});
