@@ -17,7 +17,7 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kTie = 1e-6;           ///< errors that count as equal: the first is taken
+constexpr double kSameError = 1e-6;     ///< errors that count as equal: the first is taken
 constexpr double kParallel = 1 - 1e-9;  ///< cosine: an output's modal vector is that of an input
 constexpr double kStalls = 0.95;        ///< of the error before: columns have not helped
 
@@ -108,7 +108,7 @@ Sequence::WorstPair Sequence::evaluate() {
     for (Index j = 0; j < error_[k].cols(); ++j)
       for (Index i = 0; i < error_[k].rows(); ++i)
         if (const double e = std::abs(error_[k](i, j)) / samples_.peak(i, j);
-            !(e <= (1 + kTie) * worst.error))
+            !(e <= (1 + kSameError) * worst.error))
           worst = {i, j, k, e};
   }
   return worst;

@@ -143,7 +143,7 @@ int run([[maybe_unused]] bool quick) {
     const Measured own = measured([&] { return by_titop(path); });
     print(damage, "titop", own);
     const std::string outcome = own.outcome.data();
-    ok = ok && own.resident < 100 * 1024 &&
+    ok = ok && own.reserved < 100 * 1024 && own.resident < 100 * 1024 &&
          (outcome.starts_with("refused") || outcome.starts_with("not read"));
 #ifdef TITOP_MATIO
     if (!quick) print(damage, "libmatio", measured([&] { return by_matio(path); }));

@@ -57,7 +57,7 @@ void require_support(const detail::ClampedRun& run, const Grid& P) {
     }
 }
 
-constexpr double kLastDigit = 1e-6;  ///< a unit of the seventh digit, of an entry's largest value
+constexpr double kLastDigit = 1e-6;  ///< of sqrt(D_ii D_jj): a unit of the seventh digit
 
 void require_unit_masses(const detail::ClampedRun& run) {
   for (Index k = 0; k < run.modes.mass.size(); ++k)

@@ -202,7 +202,7 @@ struct RedundancyFinder {
     const RedundantPart& part = parts[at(own)];
     const auto place =
         std::lower_bound(part.own.begin(), part.own.end(), column) - part.own.begin();
-    if (2 * part.basis.row(place).squaredNorm() < 1) return false;  // far outside, at less cost
+    if (2 * part.basis.row(place).squaredNorm() < 1) return false;  // most of it is outside
     if (part.outside(VectorXd::Unit(part.basis.rows(), place)) > part.rounding()) return false;
     std::map<int, double> left;  // of the rows in other columns
     const double size = subtract(part, VectorXd::Unit(part.basis.rows(), place), left);

@@ -10,6 +10,7 @@
 #include <titop/compiler/solve/weak_pivot.hpp>
 #include <titop/compiler/system/system_data.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/support/each_once.hpp>
 #include <unordered_set>
 
