@@ -91,7 +91,7 @@ internal(compiler/system/compile_graph.hpp analysis/certify/ analysis/reduction/
 # analysis/certify/ measures differences beside the rounding of the elimination.
 internal(compiler/system/elimination_terms.hpp analysis/certify/)
 # analysis/lft/ takes columns and rows of the transfers of opened systems.
-# analysis/certify/certify_full.cpp and emit/cpp/form.cpp take the transfers that there are.
+# analysis/certify/certify_full.cpp and emit/cpp/form.cpp use transfer_if_any.
 internal(compiler/system/transfer_part.hpp analysis/lft/ analysis/certify/certify_full.cpp
          emit/cpp/form.cpp)
 # A System is a handle on top of the compiler: its results are functions of SystemData, which do not

@@ -9,8 +9,8 @@
 /// The second-order form that the states of a passive structure have. For the library's own files.
 namespace titop::detail {
 
-/// Of G, relative to its diagonal, and of other numbers that a structure has twice: rounding of an
-/// elimination.
+/// Asymmetry of G relative to its diagonal, and relative difference of two vectors that
+/// reciprocity, proportional damping or a rigid motion makes equal: rounding of an elimination.
 inline constexpr double kSymmetric = 1e-7;
 
 /// Coordinates q (each with its rate) of a structure: qdd = -G (K q + D qd) + B u with G = M^-1,

@@ -135,7 +135,7 @@ class F06Reader {
   }
 
   /// "REFERENCE POINT AT ORIGIN OF BASIC COORDINATE SYSTEM", "... AT GRID 12", and for weights
-  /// "REFERENCE POINT =        0", as tables of WEIGHTCHECK have it, too.
+  /// "REFERENCE POINT =        0"; those of WEIGHTCHECK are not read.
   void reference(const TextLine& line, const Tokens& found) {
     if (table_ != TableKind::weight_head && !contains(line.text, "REFERENCE POINT AT")) return;
     int grid = 0;

@@ -14,7 +14,8 @@ constexpr double kRankTolerance = 1e-9;
 /// (pi / 2 typed as 1.5708 tilts an axis by 4e-6), dropped ones above the second.
 constexpr double kNarrow = 1e-4, kNothing = 1e-12;
 
-/// A pivot to be taken before the best ones are known.
+/// Of the best: a pivot that is taken before the best ones are known, or kept since it was chosen
+/// before. It may cost three digits.
 constexpr double kGoodPivot = 1e-3;
 
 /// Rows with the columns in which they have entries: M is rows x columns.

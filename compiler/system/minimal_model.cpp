@@ -39,7 +39,7 @@ int exact_order_of(const SystemData& d, int states, std::vector<Note>& notes) {
 constexpr double kCertain = 1e-6;
 constexpr double kMoving = 1e-9;  ///< of an entry: a smaller change with s may be rounding
 
-/// Which digits the certificate of the factors finds lost; null: none.
+/// The reason by the certificate of the factors why the order may be in doubt; null: none.
 const char* digits_lost(const SystemData& d) {
   if (d.checked().digits_lost) return "digits are lost (see certify)";
   return d.checked().rounding_alone ? "some output is rounding alone" : nullptr;

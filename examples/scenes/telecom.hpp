@@ -28,13 +28,13 @@ inline constexpr double wheel_momentum = 20;  ///< of the wheel about y [N m s]
 inline const titop::Slosh liquid{.mass = 120, .stiffness = 20, .damping = 1.5};
 
 inline const Vector3d kp(30, 20, 35), kd(300, 190, 340);  ///< per axis [N m/rad], [N m s/rad]
-inline constexpr double lag = 4;                          ///< of the law's filter [rad/s]
+inline constexpr double lag = 4;                          ///< of the law's two filters [rad/s]
 inline constexpr double period = 0.1;                     ///< of the law on board [s]
 
-/// (kp + kd s) / (s / lag + 1) per axis, from angles to torques.
+/// (kp + kd s) / (s / lag + 1)^2 per axis, from angles to torques.
 titop::Lti law_block();
 
-/// The yoke from its mesh, with the lowest modes and what the others do statically.
+/// The yoke from its mesh: its lowest modes, and residual vectors of its tip.
 titop::FlexibleBody read_yoke();
 
 /// A panel between its two long edges, which are stiff, with its lowest modes.

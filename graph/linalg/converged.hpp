@@ -17,8 +17,9 @@ struct Ordered {
 
 /// In the order of A's parts (linalg/similarity_scaling.hpp) A is block upper triangular, and
 /// reduction to Hessenberg form and iteration keep each zero below its blocks: the eigenvalues of a
-/// part have no rounding of the other parts or of the entries between them, of any size (LAPACK's
-/// gebal permutes likewise).
+/// part have no rounding of the entries between parts. Exceptions: entries below eps^2 of A's norm,
+/// which count as 0, and an exceptional shift, after 10 and 30 steps. (LAPACK's gebal does so for
+/// parts of one state.)
 ///
 /// Eigen's iteration can cycle on defective matrices whose shifts and rotations repeat, since it
 /// tries other shifts after 10 and 30 steps only. Rows and columns in another order, which causes

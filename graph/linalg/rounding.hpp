@@ -17,18 +17,18 @@ inline constexpr double kHalfDigits = 0x1p-26;
 /// Distance, relative to their modulus, of two roots that are one for exact data: half the digits,
 /// times up to 64 of their condition.
 inline constexpr double kDoubleRoot = 64 * kHalfDigits;
-/// Rounding of a component of an axis (a unit vector) after some rotations, with room for axes of
-/// twelve typed digits: a smaller component is 0.
+/// Rounding of products of a few rotations, relative to their terms, with room for axes of twelve
+/// typed digits: a smaller component, asymmetry or work is 0.
 inline constexpr double kAxisRounding = 1e-12;
 /// Remainder of a unit vector beside others: if it is smaller the vector is in their span, to
 /// within the digits of a static response.
 inline constexpr double kInSpan = 1e-7;
-/// A matrix is symmetric, semidefinite or orthonormal to this share of its diagonal: nine typed
-/// digits, or the rounding of an elimination.
+/// A matrix is symmetric, semidefinite or orthonormal, and an axis depends on others, to this share
+/// of its size: nine typed digits, or the rounding of an elimination.
 inline constexpr double kMatrixDigits = 1e-9;
 
-/// Numbers read from a text file have some six digits: a motion of a point below this share of its
-/// others is 0.
+/// Numbers read from a text file have some six digits: a smaller relative difference, or share of
+/// the largest, is 0.
 inline constexpr double kTextDigits = 1e-6;
 /// Times one sample of rounding, which may be small by chance: a smaller number may be rounding
 /// alone. Measured: up to 6 for true zeros, 1e5 and more for others.
@@ -39,7 +39,8 @@ inline constexpr double kTie = 1 + 1e-9;
 /// Of the largest: those that are as large count as equal, where eigenvectors and factors have lost
 /// some digits; the first is taken.
 inline constexpr double kEqual = 1 - 1e-6;
-/// A result that its data, or one step of refinement, change by more has not one digit.
+/// A tenth, one decimal digit: a result that its data, or one step of refinement, change by more
+/// has none.
 inline constexpr double kOneDigit = 0.1;
 /// Steps of refinement that shrink by less do not converge.
 inline constexpr double kShrinks = 0.25;

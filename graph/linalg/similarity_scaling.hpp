@@ -19,7 +19,7 @@ Eigen::VectorXd similarity_scaling_of_parts(Eigen::MatrixXd& A);
 
 /// Powers of two that bring all entries of M (m x n) other than 0 as near to 1 as rows and columns
 /// can, by least squares of logarithms [Curtis, Reid 1972]: the scaled matrix is the same in all
-/// units of rows and columns, up to factors of about 2. Rows and columns of zeros keep their size.
+/// units of rows and columns, up to factors of 4. Rows and columns of zeros keep their size.
 /// O((m + n)^3 / 3).
 struct TwoSidedScaling {
   Eigen::VectorXd row, column;  ///< diag(row) M diag(column) is the scaled matrix
