@@ -1,5 +1,6 @@
 # docs/numerics.md has every constant by which these rooms decide, as `file:kName = value`, and no
-# other: every "constexpr double k..." of their files. The tests that it names exist.
+# other: every "constexpr double k..." of their files. The tests that it names exist; so do the
+# files, benchmarks and tests of its standard algorithms.
 cmake_policy(VERSION 3.25)
 file(READ ${ROOT}/docs/numerics.md page)
 set(files)
@@ -42,6 +43,22 @@ foreach(cell ${cells})
     string(REPLACE "." "/" source ${test})
     if(NOT EXISTS ${ROOT}/tests/${source}.cpp)
       string(APPEND wrong "\n  there is no test ${test}")
+    endif()
+  endforeach()
+endforeach()
+string(REGEX REPLACE ".*\n## Standard algorithms of its own\n" "" section "${page}")
+string(REGEX REPLACE "\n## .*" "" section "${section}")
+string(REGEX MATCHALL "\n\\| [^\n]*" rows "${section}")
+foreach(row ${rows})
+  string(REGEX MATCHALL "`[a-z_0-9/]+(\\.[ch]pp)?`" names "${row}")
+  string(REGEX REPLACE "`[^`]*`" "" row "${row}")
+  string(REGEX MATCHALL "[a-z_]+\\.[a-z_0-9]+" tests "${row}")
+  foreach(name ${names} ${tests})
+    string(REPLACE "`" "" name ${name})
+    string(REPLACE "." "/" test ${name})
+    if(NOT EXISTS ${ROOT}/${name} AND NOT EXISTS ${ROOT}/compiler/${name} AND
+       NOT EXISTS ${ROOT}/bench/programs/${name}.cpp AND NOT EXISTS ${ROOT}/tests/${test}.cpp)
+      string(APPEND wrong "\n  named among the standard algorithms, but not there: ${name}")
     endif()
   endforeach()
 endforeach()
