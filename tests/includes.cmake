@@ -12,7 +12,7 @@ endif()
 string(REGEX REPLACE "[ \\\n]+" ";" files "${files}")
 
 set(wrong "")
-foreach(rule "titop|96|/titop/" "Eigen|175|/eigen3/" "all|600|^/")
+foreach(rule "titop|97|/titop/" "Eigen|175|/eigen3/" "all|600|^/")
   string(REPLACE "|" ";" rule "${rule}")
   list(GET rule 0 name)
   list(GET rule 1 limit)

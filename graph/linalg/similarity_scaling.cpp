@@ -6,6 +6,7 @@
 #include <cmath>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/linalg/similarity_scaling.hpp>
 #include <vector>
 
@@ -93,6 +94,10 @@ VectorXd within(const MatrixXd& part) {
   return other.cwiseAbs().sum() <= kAsGood * one.cwiseAbs().sum() ? d_other : d_one;
 }
 
+/// Of the largest entry of all parts: a part whose entries are smaller may be rounding alone, and
+/// counts as 0.
+constexpr double kOwn = 16 * kEpsilon;
+
 /// Makes the largest entry between two parts as large as the largest within either; within parts
 /// that are 0, as the largest of all.
 void fit_between(MatrixXd& A, VectorXd& d, const std::vector<std::vector<int>>& parts) {
@@ -109,7 +114,7 @@ void fit_between(MatrixXd& A, VectorXd& d, const std::vector<std::vector<int>>& 
   const double most = largest.diagonal().maxCoeff();
   const auto size = [&](int i, int j) {
     const double within = std::max(largest(i, i), largest(j, j));
-    return within > 0 ? within : most > 0 ? most : 1;
+    return within > kOwn * most ? within : most > 0 ? most : 1;
   };
   std::vector<LogRatio> ratios;
   for (int i = 0; i < count; ++i)
