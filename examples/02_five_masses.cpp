@@ -114,7 +114,8 @@ int main() {
   ok &= by_hand::agrees("transfer against M and K", by_hand::transfer_error(scene, hand), 1e-13);
   ok &= by_hand::agrees("dense model against M and K", by_hand::transfer_error(dense, hand), 1e-12);
   ok &= fig8.state_space().order() == 10;
-  std::printf("xdd_3 / u at 3 rad/s: %.12f\n", fig8.transfer({0, 3})(5, 0).real());
+  std::printf("xdd_3 / u at 3 rad/s: %.12f\n",
+              fig8.transfer({0, 3})(fig8.output("xdd3"), fig8.input("u")).real());
   const Eigen::MatrixXd rest = fig8.static_gain();
   std::printf("x at rest under 1 N:");
   for (int i = 0; i < 5; ++i)  // two of them are 0 up to rounding, of either sign

@@ -65,16 +65,6 @@ Eigen::MatrixXcd StateSpace::transfer(std::complex<double> s) const {
 
 namespace {
 
-int find(const std::vector<std::string>& names, const std::string& name, std::string_view subject) {
-  const auto it = std::find(names.begin(), names.end(), name);
-  if (it != names.end()) return static_cast<int>(it - names.begin());
-  std::string all;
-  for (std::size_t i = 0; i < names.size() && i < 12; ++i) all += (i ? ", " : "") + names[i];
-  if (names.size() > 12) all += ", ...";
-  throw Error(Code::unknown_name, fmt::format("the model has no {} \"{}\"", subject, name),
-              fmt::format("its {}s are: {}", subject, all));
-}
-
 void print(std::string& text, std::string_view title, const Eigen::MatrixXd& m,
            const std::vector<std::string>& rows, const std::vector<std::string>& cols) {
   constexpr std::size_t most = 8;
@@ -94,9 +84,22 @@ void print(std::string& text, std::string_view title, const Eigen::MatrixXd& m,
 
 }  // namespace
 
-int StateSpace::output(const std::string& name) const { return find(outputs, name, "output"); }
-int StateSpace::input(const std::string& name) const { return find(inputs, name, "input"); }
-int StateSpace::state(const std::string& name) const { return find(states, name, "state"); }
+int position_of(const std::vector<std::string>& names, const std::string& name,
+                std::string_view subject) {
+  const auto it = std::find(names.begin(), names.end(), name);
+  if (it != names.end()) return static_cast<int>(it - names.begin());
+  std::string all;
+  for (std::size_t i = 0; i < names.size() && i < 12; ++i) all += (i ? ", " : "") + names[i];
+  if (names.size() > 12) all += ", ...";
+  throw Error(Code::unknown_name, fmt::format("the model has no {} \"{}\"", subject, name),
+              fmt::format("its {}s are: {}", subject, all));
+}
+
+int StateSpace::output(const std::string& name) const {
+  return position_of(outputs, name, "output");
+}
+int StateSpace::input(const std::string& name) const { return position_of(inputs, name, "input"); }
+int StateSpace::state(const std::string& name) const { return position_of(states, name, "state"); }
 
 int unit_entry(const Eigen::MatrixXd& A, Eigen::Index row) {
   Eigen::Index entry = -1, count = 0;

@@ -31,6 +31,11 @@ struct StateSpace {
   int state(const std::string& name) const;
 };
 
+/// Position of `name`; throws unknown_name, with the first of the valid ones, for a `subject`
+/// ("input") that the model does not have. O(names).
+int position_of(const std::vector<std::string>& names, const std::string& name,
+                std::string_view subject);
+
 /// Throws size, with all matrices that do not fit: A must be n x n, B n x nu, C ny x n, D ny x nu,
 /// with n the rows of A, nu the columns of B and ny the rows of C. `user`: for the message.
 void require_fitting(const StateSpace& model, const std::string& user);

@@ -5,17 +5,6 @@
 #include <titop/analysis/control/response.hpp>
 
 namespace titop {
-namespace {
-
-/// The names alone, for their places.
-StateSpace names_of(const System& system) {
-  StateSpace m;
-  m.inputs = system.inputs(), m.outputs = system.outputs();
-  return m;
-}
-
-}  // namespace
-
 double decibels(double gain) { return 20 * std::log10(gain); }
 
 double degrees(double radians) { return radians * 180 / std::numbers::pi; }
@@ -47,8 +36,7 @@ std::vector<double> degrees(std::span<const std::complex<double>> values) {
 
 BodeResponse bode(const System& system, const std::string& output, const std::string& input,
                   std::span<const double> omega) {
-  const StateSpace names = names_of(system);
-  const int row = names.output(output), column = names.input(input);
+  const int row = system.output(output), column = system.input(input);
   std::vector<std::complex<double>> values;
   for (const Eigen::MatrixXcd& G : system.frequency_response(omega))
     values.push_back(G(row, column));
@@ -56,11 +44,10 @@ BodeResponse bode(const System& system, const std::string& output, const std::st
 }
 
 Eigen::VectorXd input_values(const System& system, const ParameterList& values) {
-  const StateSpace names = names_of(system);
-  Eigen::VectorXd u = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(names.inputs.size()));
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(std::ssize(system.inputs()));
   std::vector<int> set;
   for (const auto& [name, value] : values) {
-    const int i = names.input(name);
+    const int i = system.input(name);
     if (std::find(set.begin(), set.end(), i) != set.end())
       throw Error(Code::duplicate_name, "input " + name + " is given twice",
                   "give each input one value");

@@ -24,6 +24,8 @@ int System::order() const { return data_->states.order(); }
 const std::vector<std::string>& System::states() const& { return data_->state_names(); }
 const std::vector<std::string>& System::inputs() const& { return data_->layout().inputs; }
 const std::vector<std::string>& System::outputs() const& { return data_->layout().outputs; }
+int System::input(const std::string& name) const { return position_of(inputs(), name, "input"); }
+int System::output(const std::string& name) const { return position_of(outputs(), name, "output"); }
 const Stage& System::stage() const& { return data_->skeleton->stage; }
 const std::vector<Note>& System::notes() const& { return data_->noted(); }
 

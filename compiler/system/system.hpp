@@ -49,6 +49,10 @@ class System {
   std::vector<std::string> inputs() const&& { return inputs(); }
   const std::vector<std::string>& outputs() const&;
   std::vector<std::string> outputs() const&& { return outputs(); }
+  /// Column of the transfer, and entry of u, of this scalar input: `system.input("ref(3)")`; row of
+  /// the transfer, and entry of y, of this scalar output. Throw unknown_name with the valid names.
+  int input(const std::string& name) const;
+  int output(const std::string& name) const;
 
   /// xdot and y of x (as states() lists them) and u (as inputs()), in SI units and the frames of
   /// the ports, through the factors: O(bodies). Throws size if x or u has another size.

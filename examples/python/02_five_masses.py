@@ -58,7 +58,7 @@ print(f"Fig. 1, no inputs: order {fig1.state_space().order}\n{fig1.poles()}", en
 
 fig8 = titop.compile(five_masses(PLAIN, actuator=True))
 print(f"\nFig. 8: order {fig8.state_space().order}")
-print(f"xdd_3 / u at 3 rad/s: {fig8.transfer(3j)[5, 0].real:.12f}")
+print(f"xdd_3 / u at 3 rad/s: {fig8.transfer(3j)[fig8.output('xdd3'), fig8.input('u')].real:.12f}")
 rest = fig8.static_gain()
 print("x at rest under 1 N:", *(f"{round(x, 7) + 0.0:.7f}" for x in rest[:5, 0]), "m")
 

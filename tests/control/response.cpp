@@ -58,6 +58,11 @@ TEST_CASE("angles of an undamped mode, of zeros and of poles") {
 
 TEST_CASE("inputs by name, and a step of them") {
   const System system = three_lags();
+  CHECK(system.input("v(3)") == 3);
+  CHECK(system.output("z(2)") == 2);
+  CHECK(
+      has_mistake(error_of([&] { system.output("v(2)"); }), Code::unknown_name, {"v(2)", "z(3)"}));
+  CHECK(has_mistake(error_of([&] { system.input("v"); }), Code::unknown_name, {"v", "v(2)"}));
   CHECK(input_values(system, {{"v(3)", 0.5}, {"u", 2}}) == Eigen::Vector4d(2, 0, 0, 0.5));
   CHECK(input_values(system, {}) == Eigen::Vector4d::Zero());
   CHECK(has_mistake(error_of([&] {

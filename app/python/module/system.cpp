@@ -96,6 +96,9 @@ void def_notes(SystemType& type) {
       .def_property_readonly("states", [](const System& s) { return s.states(); })
       .def_property_readonly("inputs", [](const System& s) { return s.inputs(); })
       .def_property_readonly("outputs", [](const System& s) { return s.outputs(); })
+      .def("input", &System::input, "name"_a,
+           "Column of this scalar input, \"ref(3)\", in transfers and in u.")
+      .def("output", &System::output, "name"_a, "Row of this scalar output in transfers and in y.")
       .def_property_readonly(
           "parameters",
           [](const System& s) {
