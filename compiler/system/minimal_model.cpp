@@ -23,17 +23,6 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using linalg::at;
 
-/// The minimal order if exact arithmetic is enabled and has found it; else -1.
-int exact_order_of(const SystemData& d, int states, std::vector<Note>& notes) {
-  if (states > d.skeleton->options.exact_up_to) return -1;
-  // Blocks' states that follow from others count there, and so do integrators of positions.
-  const ExactOrder exact = minreal::order_of_stage(d.skeleton->stage, states,
-                                                   {.states = 4 * d.skeleton->options.exact_up_to},
-                                                   d.numbers.parameters);
-  notes.push_back({Note::Kind::info, "minimize", to_string(exact)});
-  return exact.decided ? exact.order : -1;
-}
-
 /// Part of an entry of the transfer in which finer arithmetic and the dense model must agree for
 /// the model to be certain, and least visibility of a mode that counts then.
 constexpr double kCertain = 1e-6;
@@ -167,40 +156,44 @@ Change change(const SystemData& d, const StateSpace& dense, const StateSpace& ju
   return worst;
 }
 
-/// Diagrams up to this size are counted without rounding if their order is decided, in half a
-/// millisecond, and if it is not, in ten.
-constexpr ExactOptions kCountedAlways = {.states = 60, .unknowns = 100},
-                       kCountedInDoubt = {.states = 100, .unknowns = 1000};
+/// The order by exact arithmetic, which counts the diagram's numbers without rounding: diagrams up
+/// to Options::exact_up_to before any mode is judged (`asked`), others afterwards: half a
+/// millisecond if the order is decided, ten if it is not.
+ExactOrder exact_order_of(const SystemData& d, int states, bool asked, bool decided) {
+  // Blocks' states that follow from others count there, and so do integrators of positions.
+  const ExactOptions limits =
+      asked     ? ExactOptions{.states = std::max(60, 4 * d.skeleton->options.exact_up_to)}
+      : decided ? ExactOptions{.states = 60, .unknowns = 100}
+                : ExactOptions{.states = 100, .unknowns = 1000};
+  return minreal::order_of_stage(d.skeleton->stage, states, limits, d.numbers.parameters);
+}
 
-/// Removes states that exact arithmetic shows to be redundant: if it counts fewer states for the
-/// diagram's numbers than are kept, and the transfer keeps its digits without them. More states
-/// than are kept may be due to rounding of these numbers. False: nothing is removed.
-bool lower_to_exact_order(const SystemData& d, const StateSpace& dense, const StateSpace& judged,
-                          Minimized& m) {
-  if (m.order.exact) return false;
-  const ExactOrder exact = minreal::order_of_stage(
-      d.skeleton->stage, dense.order(), m.order.decided() ? kCountedAlways : kCountedInDoubt,
-      d.numbers.parameters);
-  if (!exact.decided) return false;
-  m.order.lowest = std::min(m.order.lowest, exact.order);
-  if (exact.order >= m.order.order) {
-    m.order.highest = std::min(m.order.highest, exact.order);
-    return false;
+/// Removes states that exact arithmetic shows to be redundant, if it counts fewer than are kept and
+/// the transfer keeps its digits without them: the change measured. None: nothing is removed. More
+/// states than are kept may be due to rounding of the diagram's numbers.
+std::optional<Change> lower_to(const ExactOrder& exact, const SystemData& d,
+                               const StateSpace& dense, const StateSpace& judged, Minimized& m) {
+  OrderVerdict& v = m.order;
+  if (!exact.decided) return {};
+  v.lowest = std::min(v.lowest, exact.order);
+  if (exact.order >= v.order) {
+    if (!v.exact) v.highest = std::min(v.highest, exact.order);
+    return {};
   }
   std::optional<minreal::ModelOfOrder> found = minreal::to_order(judged, exact.order);
-  if (!found) return false;
-  Minimized fewer{std::move(found->model), m.order, std::move(found->notes)};
+  if (!found) return {};
+  Minimized fewer{std::move(found->model), v, std::move(found->notes)};
   fewer.order.order = fewer.order.highest = exact.order;
   fewer.order.undecided.clear();
-  fewer.order.removed.push_back({0, m.order.order - exact.order, found->tolerance, found->tolerance,
+  fewer.order.removed.push_back({0, v.order - exact.order, found->tolerance, found->tolerance,
                                  "exact arithmetic counts it out"});
   const double allowed = std::max(kUnchanged, 10 * d.skeleton->options.resolution);
-  const Change by = change(d, dense, judged, fewer);
-  if (by.tried.empty() || std::max(by.by_modes, by.in_all) > allowed) return false;
+  Change by = change(d, dense, judged, fewer);
+  if (by.tried.empty() || std::max(by.by_modes, by.in_all) > allowed) return {};
   fewer.order.change = by.by_modes;
   fewer.notes.insert(fewer.notes.begin(), to_string(fewer.order));
   m = std::move(fewer);
-  return true;
+  return by;
 }
 
 /// Without a transfer no change is measured: modes within rounding stay undecided.
@@ -225,35 +218,41 @@ void say_left_out(const Change& by, std::vector<Note>& notes) {
 /// Replaces the dense model by the minimal one, if its transfer keeps its digits.
 void minimize_checked(const SystemData& d, DenseModel& m) {
   StateSpace& dense = m.model;
-  const double resolution = d.skeleton->options.resolution;
+  const Options& given = d.skeleton->options;
+  const bool asked = dense.order() <= given.exact_up_to;
+  ExactOrder exact;
+  const auto count = [&](bool decided) {
+    exact = exact_order_of(d, dense.order(), asked, decided);
+  };
+  if (asked) count(true), m.notes.push_back({Note::Kind::info, "minimize", to_string(exact)});
   const auto [judged, rounding] = without_rounding(d, dense);
-  const MinimizeOptions options{.resolution = resolution,
-                                .exact_order = exact_order_of(d, dense.order(), m.notes),
+  const MinimizeOptions options{.resolution = given.resolution,
+                                .exact_order = exact.decided ? exact.order : -1,
                                 .energy = d.states.trivial() ? MatrixXd() : potential_energy(d),
                                 .rounding = rounding};
   Minimized minimal = minreal::minimize_unmeasured(judged, options);
   doubt_lost_digits(d, judged, options, minimal.order, m.notes);
   if (m.error.beside_largest.error > kUnclearDigits && !minimal.order.exact)
     minimal.order.highest = dense.order();
-  lower_to_exact_order(d, dense, judged, minimal);
-  if (dense.inputs.empty() || dense.outputs.empty()) doubt_unmeasured(minimal.order);
-  if (!minimal.notes.empty()) minimal.notes.front() = to_string(minimal.order);
+  if (!asked) count(minimal.order.decided());
+  std::optional<Change> by = lower_to(exact, d, dense, judged, minimal);
+  const bool ports = !dense.inputs.empty() && !dense.outputs.empty();
+  if (!ports) doubt_unmeasured(minimal.order);
   const bool removed = !minimal.order.removed.empty();
-  double lost = 0;
-  bool untried = false;
-  if (removed && !dense.inputs.empty() && !dense.outputs.empty()) {
-    const Change by = change(d, dense, judged, minimal);
-    minimal.order.change = by.by_modes;
-    minimal.notes.front() = to_string(minimal.order);
-    untried = by.tried.empty();
-    lost = untried ? 1 : by.in_all;  // not measured: put all back
-    say_left_out(by, m.notes);
+  if (!by && removed && ports) by = change(d, dense, judged, minimal);
+  if (by) {
+    minimal.order.change = by->by_modes;
+    say_left_out(*by, m.notes);
   }
-  if (minreal::put_back(dense, resolution, lost, minimal)) {
+  if (!minimal.notes.empty()) minimal.notes.front() = to_string(minimal.order);
+  const bool untried = by && by->tried.empty();
+  const double lost = untried ? 1 : by ? by->in_all : 0;  // not measured: put all back
+  if (minreal::put_back(dense, given.resolution, lost, minimal)) {
     if (untried)
       minimal.notes.back() =
           "nothing was removed: near the removed modes the factors have no digit";
-    if (!lower_to_exact_order(d, dense, judged, minimal)) {
+    if (!asked && !exact.decided) count(minimal.order.decided());
+    if (!lower_to(exact, d, dense, judged, minimal)) {
       m.notes.push_back({Note::Kind::warning, "minimize",
                          fmt::format("{}: {}", minimal.notes.back(), minimal.notes.front())});
       m.order = std::move(minimal.order);

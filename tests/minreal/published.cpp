@@ -97,7 +97,10 @@ TEST_CASE("a pole of order k many times over: k + 1 exactly; in double an interv
     CHECK(exact.decided);
     CHECK(exact.order == k + 1);
     CHECK(exact.states == k * k + k + 1);
-    const System system = compile(d, {.minimize_up_to = 0});
+    const System system = compile(d, {.minimize_up_to = 0}), counted = compile(d),
+                 asked = compile(d, {.exact_up_to = k * k + k + 1});
+    CHECK(asked.state_space().order() <= counted.state_space().order());
+    CHECK(asked.order_verdict().lowest == k + 1);
     const Minimized r = minimize(system.state_space());
     CHECK(r.order.lowest <= k + 1);
     CHECK(r.order.highest >= k + 1);
