@@ -8,6 +8,7 @@
 #include <titop/compiler/minreal/take_out.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/linalg/similarity_scaling.hpp>
+#include <titop/graph/name_order.hpp>
 
 namespace titop::minreal {
 namespace {
@@ -69,17 +70,21 @@ void report(const IndependentRows& rows, const char* why, RemovedStates& result)
 
 using RowsOfModel = MatrixXd (*)(const StateSpace&);
 
-/// One repetition for one side; false if all states count.
-bool take_out_once(detail::Sampled& s, RowsOfModel rows_of_model, bool by_inputs, MatrixXd& energy,
-                   RemovedStates& result) {
+/// Rows of one side, against the rounding of each entry.
+IndependentRows rows_at_zero(const detail::Sampled& s, RowsOfModel rows_of_model, bool by_inputs) {
   const MatrixXd M = rows_of_model(s.model);
   const MatrixXd rounding =
       detail::rounding_of(s.off, M, rows_of_model).cwiseMax(kEpsilon * M.cwiseAbs());
   const MatrixXd A = by_inputs ? s.model.A : MatrixXd(s.model.A.transpose());
   MatrixXd balanced = A;
   const Eigen::VectorXd unit = linalg::similarity_scaling_of_parts(balanced);
-  const IndependentRows rows =
-      independent_rows(M, rounding, unit, levels(A, find_integrators(s.model).integrators));
+  return independent_rows(M, rounding, unit, levels(A, find_integrators(s.model).integrators));
+}
+
+/// One repetition for one side; false if all states count.
+bool take_out_once(detail::Sampled& s, RowsOfModel rows_of_model, bool by_inputs, MatrixXd& energy,
+                   RemovedStates& result) {
+  const IndependentRows rows = rows_at_zero(s, rows_of_model, by_inputs);
   report(rows, by_inputs ? "no input moves it" : "no output sees it", result);
   const std::vector<int> out = rows_of(rows.out);
   if (out.empty()) return false;
@@ -97,6 +102,12 @@ bool take_out_once(detail::Sampled& s, RowsOfModel rows_of_model, bool by_inputs
   detail::clear_rounding(s);
   energy = energy_without(energy, out, by_inputs ? rows.T : none);
   return true;
+}
+
+/// These states alone, without inputs and outputs.
+StateSpace without_ports(const StateSpace& m, const std::vector<int>& states) {
+  const MatrixXd none(std::ssize(states), 0);
+  return {m.A(states, states), none, none.transpose(), {}, pick(m.states, states), {}, {}};
 }
 
 /// States that inputs reach through A, step by step.
@@ -155,10 +166,14 @@ RemovedStates take_out_at_zero(detail::Sampled& s, MatrixXd& energy) {
   return result;
 }
 
+bool has_pole_at_zero(const detail::Sampled& s, const std::vector<int>& states) {
+  detail::Sampled part{without_ports(s.model, states), {}};
+  for (const StateSpace& off : s.off) part.off.push_back(without_ports(off, states));
+  return !rows_at_zero(part, driven, true).out.empty();
+}
+
 MatrixXd without_poles_at_zero(const StateSpace& model, const MatrixXd& rounding) {
-  const auto n = model.A.rows();
-  const MatrixXd in(n, 0), out(0, n), none(0, 0);
-  detail::Sampled s = detail::sampled({model.A, in, out, none, model.states, {}, {}},
+  detail::Sampled s = detail::sampled(without_ports(model, others(model.A.rows(), {})),
                                       {rounding, {}, {}, {}, {}, {}, {}});
   MatrixXd energy;
   RemovedStates unused;

@@ -36,6 +36,10 @@ RemovedStates take_out_by_pattern(detail::Sampled& sampled, Eigen::MatrixXd& ene
 /// that its sum over the others cancels least. O(n^3) for each repetition.
 RemovedStates take_out_at_zero(detail::Sampled& sampled, Eigen::MatrixXd& energy);
 
+/// True if A of these states alone has a pole at 0: a row depends on the others, by the same
+/// criterion. O(n^3).
+bool has_pole_at_zero(const detail::Sampled& sampled, const std::vector<int>& states);
+
 /// A (of a model's n x n) without its poles at 0: of each row that depends on the others the state
 /// is eliminated, which follows from the others and a constant. `rounding` of each entry; empty:
 /// 2.2e-16 of it. O(n^3) for each repetition.

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <titop/compiler/certificate/sampled.hpp>
 #include <titop/compiler/minreal/clusters.hpp>
 #include <titop/compiler/minreal/pole_clusters.hpp>
 #include <titop/graph/linalg/eigen.hpp>
@@ -107,8 +108,9 @@ void judge_wholes(const StateSpace& model, const PoleClusters& p, ModeSet& m) {
     OwnModel own = own_model(p, whole, model);
     WholeCluster c{p.e.values(whole).cwiseAbs().mean(), minimal_part(own.model), std::move(own.V),
                    std::move(own.W)};
-    const bool at_zero = c.omega <= kNearZero * own.model.A_size;
-    if (at_zero) c.omega = 0;  // a smaller value is rounding of a multiple pole
+    const bool at_zero = Eigen::JacobiSVD<MatrixXd>(own.model.A).singularValues().minCoeff() <=
+                         detail::kRoundingFactor * own.model.A_noise;
+    if (at_zero) c.omega = 0;  // else rounding of a multiple pole
     c.name = at_zero ? kAtZero : "its poles are equal up to rounding";
     for (const Index j : whole) m.apart[at(j)] = c.name, m.states[at(j)] = 0;
     m.wholes.push_back(std::move(c));

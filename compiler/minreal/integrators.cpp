@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <numeric>
+#include <titop/compiler/minreal/at_zero.hpp>
 #include <titop/compiler/minreal/clusters.hpp>
 #include <titop/compiler/minreal/integrators.hpp>
 #include <titop/graph/linalg/eigen.hpp>
@@ -12,8 +13,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-
-constexpr double kSingular = 1e-15;  ///< rcond of a matrix with a pole at 0, up to rounding
 
 using linalg::at;
 
@@ -103,7 +102,7 @@ MatrixXd followed(const MatrixXd& N, const MatrixXd& taken, const Divided& divid
 
 }  // namespace
 
-std::optional<Decoupled> decouple(const StateSpace& model, const IntegratorSplit& states) {
+Decoupled decouple(const StateSpace& model, const IntegratorSplit& states) {
   const auto& [rest, integrators] = states;
   Decoupled d{MatrixXd::Zero(std::ssize(integrators), std::ssize(rest)),
               model.A(integrators, integrators), model.B(integrators, Eigen::all),
@@ -112,7 +111,6 @@ std::optional<Decoupled> decouple(const StateSpace& model, const IntegratorSplit
   MatrixXd A = model.A(rest, rest);
   const Eigen::VectorXd scale = linalg::similarity_scaling_of_parts(A);
   const Eigen::PartialPivLU<MatrixXd> lu(MatrixXd(A.transpose()));
-  if (!(lu.rcond() > kSingular)) return std::nullopt;
   const auto divided = [&](const MatrixXd& Y) {
     const MatrixXd right = Y.transpose();
     return MatrixXd(MatrixXd(lu.solve(right)).transpose());
@@ -121,25 +119,33 @@ std::optional<Decoupled> decouple(const StateSpace& model, const IntegratorSplit
   d.X = followed(d.N, taken, divided) * scale.cwiseInverse().asDiagonal();
   d.B -= d.X * model.B(rest, Eigen::all);
   d.C_rest += model.C(Eigen::all, integrators) * d.X;
-  if (!d.X.allFinite() || !d.B.allFinite() || !d.C_rest.allFinite()) return std::nullopt;
   return d;
 }
 
+namespace {
+
+/// False if the other states have a pole so near 0 that it is 0 after rounding.
+bool is_finite(const Decoupled& d) {
+  return d.X.allFinite() && d.B.allFinite() && d.C_rest.allFinite();
+}
+
+}  // namespace
+
 std::optional<StateSpace> decoupled_rest(const detail::Sampled& s, const IntegratorSplit& states) {
-  const std::optional<Decoupled> d = decouple(s.model, states);
-  if (!d) return std::nullopt;
+  if (has_pole_at_zero(s, states.rest)) return std::nullopt;
+  const Decoupled d = decouple(s.model, states);
+  if (!is_finite(d)) return std::nullopt;
   std::vector<Decoupled> samples;
   for (const StateSpace& off : s.off) {
-    std::optional<Decoupled> of_sample = decouple(off, states);
-    if (!of_sample) return std::nullopt;
-    samples.push_back(std::move(*of_sample));
+    samples.push_back(decouple(off, states));
+    if (!is_finite(samples.back())) return std::nullopt;
   }
   StateSpace rest = without_integrators(s.model, states);
   const MatrixXd terms = s.model.C(Eigen::all, states.rest).cwiseAbs() +
-                         s.model.C(Eigen::all, states.integrators).cwiseAbs() * d->X.cwiseAbs();
+                         s.model.C(Eigen::all, states.integrators).cwiseAbs() * d.X.cwiseAbs();
   const MatrixXd rounding =
-      detail::rounding_of(samples, d->C_rest, [](const Decoupled& part) { return part.C_rest; });
-  rest.C = detail::cleared(d->C_rest, rounding.cwiseMax(kEpsilon * terms));
+      detail::rounding_of(samples, d.C_rest, [](const Decoupled& part) { return part.C_rest; });
+  rest.C = detail::cleared(d.C_rest, rounding.cwiseMax(kEpsilon * terms));
   rest.D = s.model.D;
   rest.outputs = s.model.outputs;
   return rest;

@@ -30,12 +30,12 @@ struct Decoupled {
   Eigen::MatrixXd N, B;
   Eigen::MatrixXd C_rest;  ///< of the rest, with its part in the integrators
 };
-/// None if the rest has a pole at 0 too. The order of a model is that of both parts, since they
-/// have no pole in common. O(rest^3).
-std::optional<Decoupled> decouple(const StateSpace& model, const IntegratorSplit& states);
+/// The order of a model is that of both parts, since they have no pole in common: the rest must not
+/// have one at 0. O(rest^3).
+Decoupled decouple(const StateSpace& model, const IntegratorSplit& states);
 
 /// The rest of a decoupled model; entries at rounding level are 0. None if the rest has a pole at 0
-/// too.
+/// too (at_zero.hpp).
 std::optional<StateSpace> decoupled_rest(const detail::Sampled& sampled,
                                          const IntegratorSplit& states);
 

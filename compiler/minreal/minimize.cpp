@@ -86,7 +86,7 @@ StateSpace side_by_side(const StateSpace& rest, const StateSpace& model,
   with_rates.C.conservativeResize(model.C.rows() + k, n);
   with_rates.C.bottomRows(k).setZero();
   with_rates.D.conservativeResize(model.C.rows() + k, model.B.cols());
-  with_rates.D.bottomRows(k) = minreal::decouple(model, states)->B;
+  with_rates.D.bottomRows(k) = minreal::decouple(model, states).B;
   return minreal::with_integrators(with_rates, apart, states);
 }
 

@@ -85,8 +85,9 @@ struct Minimized {
 ///
 /// Undamped or proportionally damped models are treated as symmetric eigenproblems (l = omega^2),
 /// those of closed chains with the help of their energy, the others by the eigenvalues of A (l =
-/// s). Poles that are equal to rounding, those at 0 (2e-7 of A's norm) and those of a condition
-/// number above 1e6 have no reliable vectors: with all poles of their cluster they are split off as
+/// s). Poles that are equal to rounding, those so near 0 that rounding of A turns their vectors
+/// by more than 1e-9 (2.2e-7 of A's norm) and those of a condition number above 1e6 have no
+/// reliable vectors: with all poles of their cluster they are split off as
 /// a small model (linalg/spectral.hpp), whose controllability and observability staircases
 /// determine how many of its states count (minreal/staircase.hpp). Before any pole is computed,
 /// states leave that no input reaches or no output sees by the pattern of the matrices, and then
@@ -96,7 +97,7 @@ struct Minimized {
 /// act on no other state are separated, and the others judged by themselves. A rank is
 /// decided against four samples of rounding, 32 times the largest. The verdict's interval counts
 ///  - upwards, dropped modes above their own rounding bound, which are present, however small their
-///    effect, and those whose bound is above 1e-14, which may hide an effect;
+///    effect, and those whose bound is above 1.4e-14, which may hide an effect;
 ///  - downwards, kept modes below 1e-9 within 1e4 of their bound, and any within ten times their
 ///    bound; integrators and states of such small models within 1e4 of their rounding.
 /// A decided order holds up to rounding of the data: effects below their own rounding bound (two

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <titop/compiler/certificate/residual.hpp>
 #include <titop/compiler/minreal/clusters.hpp>
 #include <titop/compiler/minreal/pole_clusters.hpp>
 #include <titop/graph/linalg/eigen.hpp>
@@ -71,7 +72,7 @@ void add_component(const MatrixXd& scaled, const std::vector<int>& states, PoleC
     for (Index j = begin; j < begin + count; ++j) {
       c.poles.push_back(first + j);
       c.whole = c.whole || !(condition(p, first + j) <= kIll) ||
-                std::abs(s.values(j)) <= kNearZero * A.norm();
+                detail::kWarn * std::abs(s.values(j)) <= kEpsilon * A.norm();
     }
     if (!simple) c.radius = std::min(kWidest * A.norm(), (values.array() - mean).abs().maxCoeff());
     clusters.push_back(std::move(c));

@@ -10,14 +10,13 @@
 namespace titop::minreal {
 
 inline constexpr double kIll = 1e6;  ///< condition number of a pole that is judged by its vector
-inline constexpr double kNearZero = 2e-7;  ///< of the norm of A: where a pole may lie at 0
 
 struct PoleClusters {
   /// For a cluster, V and W have a basis of its invariant subspaces (linalg/spectral.hpp).
   linalg::Eigensystem e;
   Eigen::MatrixXcd T;  ///< block diagonal, upper triangular
-  /// Clusters that are judged as a whole: multiple poles, poles at 0 relative to the model's
-  /// largest, and ill-conditioned ones. Places in `e`, ascending.
+  /// Clusters that are judged as a whole: multiple poles, ill-conditioned ones, and those so near
+  /// to 0 that rounding of A has turned their vectors by more than kWarn. Places in `e`, ascending.
   std::vector<std::vector<Eigen::Index>> clusters;
   std::vector<std::vector<int>> components;  ///< states that share no entry of A with others
   std::vector<int> component;                ///< of each pole
