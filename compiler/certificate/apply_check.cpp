@@ -3,9 +3,10 @@
 #include <titop/compiler/certificate/around_states.hpp>
 #include <titop/compiler/certificate/doubt.hpp>
 #include <titop/compiler/certificate/residual.hpp>
-#include <titop/compiler/certificate/sampled.hpp>
 #include <titop/compiler/solve/instant.hpp>
+#include <titop/compiler/solve/samples.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::detail {
 
@@ -51,7 +52,7 @@ ApplyDifference apply_difference(const Factored& d, const Evaluation<double>& po
   const RowMatrix<double> rounding =
       outputs(d.states.kept_rows(doubt.xdot()), doubt.outputs()).cwiseAbs() +
       point.rounding().cwiseAbs();
-  off = (off.cwiseAbs() - kSamples * rounding).cwiseMax(0);
+  off = (off.cwiseAbs() - linalg::kNoise * rounding).cwiseMax(0);
   const double worst = share();
   if (worst <= kRoundingFactor * lost) return {};
   return {worst, prevented(d, now.xdot, plain.xdot_terms())};

@@ -4,12 +4,12 @@
 #include <optional>
 #include <titop/compiler/certificate/dense_check.hpp>
 #include <titop/compiler/certificate/residual.hpp>
-#include <titop/compiler/certificate/sampled.hpp>
 #include <titop/compiler/certificate/surroundings.hpp>
 #include <titop/compiler/certificate/tried_points.hpp>
 #include <titop/compiler/definition/compare.hpp>
 #include <titop/compiler/solve/evaluate.hpp>
 #include <titop/compiler/solve/factored.hpp>
+#include <titop/compiler/solve/samples.hpp>
 #include <titop/compiler/solve/scalar.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/index.hpp>

@@ -10,6 +10,7 @@
 #include <titop/graph/closed_form.hpp>
 #include <titop/graph/drives.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::detail {
 namespace {
@@ -28,7 +29,7 @@ struct EquationResidual {
     double difference = 0, magnitude = 0, rounding = 0;
     /// The part that rounding does not explain.
     double off() const {
-      const double explained = std::isfinite(rounding) ? kSamples * rounding : 0;
+      const double explained = std::isfinite(rounding) ? linalg::kNoise * rounding : 0;
       return std::max(std::abs(difference) - explained, 0.0);
     }
   };

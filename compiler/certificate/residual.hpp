@@ -12,10 +12,6 @@ inline constexpr double kWarn = 1e-9;
 /// Times the rounding of a value: it has a digit; times another error: it is one digit worse.
 inline constexpr double kAnotherDigit = 10;
 
-/// Factor on a sample of rounding: a difference below may be rounding alone. One sample may be
-/// small by chance, and does not contain rounding of the coefficients.
-inline constexpr double kSamples = 1e4;
-
 /// All signals of one input, at one real s or at one instant.
 struct Signals {
   std::vector<int> first = {};             ///< of every signal in `values`, and the end
@@ -36,8 +32,8 @@ struct WrittenResidual {
 
 /// Largest |left - right| over (sum of magnitudes of the terms) of all equations of Stage::source
 /// and all rows of all blocks. Zeros at rounding level do not count, nor, if a sample of rounding
-/// is known, a difference below 1e4 times its effect on the terms, or below 1e-14 of the largest of
-/// its kind in over-constrained chains. Values that are not finite count as 1. O(terms).
+/// is known, a difference below kNoise times its effect on the terms, or below 1e-14 of the largest
+/// of its kind in over-constrained chains. Values that are not finite count as 1. O(terms).
 WrittenResidual written_residual(const Factored& d, const Signals& signals);
 
 }  // namespace titop::detail

@@ -2,13 +2,13 @@
 #include <cmath>
 #include <optional>
 #include <titop/compiler/certificate/residual.hpp>
-#include <titop/compiler/certificate/sampled.hpp>
 #include <titop/compiler/certificate/tried_points.hpp>
 #include <titop/compiler/certificate/without_rounding.hpp>
 #include <titop/compiler/definition/compare.hpp>
 #include <titop/compiler/solve/evaluate.hpp>
 #include <titop/compiler/solve/frequency.hpp>
 #include <titop/compiler/solve/instant.hpp>
+#include <titop/compiler/solve/samples.hpp>
 #include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/name_order.hpp>
 
@@ -34,16 +34,18 @@ Instant one_by_one(const Factored& d, const StateSpace& m) {
 
 /// Rounding of xdot, of all blocks' states, and of y.
 StateSpace rounding(const Factored& d, const StateSpace& m, const Instant& now) {
-  // The largest of several samples estimates rounding: of four, hardly all are small.
-  constexpr int kSamples = 4;
-  RowMatrix<double> of_x = kEpsilon * now.xdot_terms(), of_y = kEpsilon * now.outputs_terms();
-  for (int i = 0; i < kSamples; ++i) {
-    const Instant off = now.doubt(i);
-    of_x = of_x.cwiseMax(off.xdot().cwiseAbs());
-    of_y = of_y.cwiseMax(off.outputs().cwiseAbs());
-  }
-  of_x = d.states.kept_rows(of_x);
-  const Eigen::Index n = m.A.cols(), inputs = m.B.cols();
+  const auto above = [](const RowMatrix<double>& x, const RowMatrix<double>& y) {
+    MatrixXd both(x.rows() + y.rows(), x.cols());
+    both << x, y;
+    return both;
+  };
+  const MatrixXd both = largest_of_samples([&](int i) {
+                          const Instant off = now.doubt(i);
+                          return above(off.xdot(), off.outputs());
+                        }).cwiseMax(kEpsilon * above(now.xdot_terms(), now.outputs_terms()));
+  const Eigen::Index n = m.A.cols(), inputs = m.B.cols(), outputs = m.C.rows();
+  const MatrixXd of_x = d.states.kept_rows(MatrixXd(both.topRows(both.rows() - outputs))),
+                 of_y = both.bottomRows(outputs);
   return {of_x.leftCols(n), of_x.rightCols(inputs),
           of_y.leftCols(n), of_y.rightCols(inputs),
           m.states,         m.inputs,
@@ -65,10 +67,9 @@ namespace {
 
 StateSpace cleared(const StateSpace& m, const StateSpace& rounding) {
   StateSpace result = m;
-  result.A = detail::cleared(m.A, rounding.A);
-  result.B = detail::cleared(m.B, rounding.B);
-  result.C = detail::cleared(m.C, rounding.C);
-  result.D = detail::cleared(m.D, rounding.D);
+  for (MatrixXd StateSpace::*part :
+       {&StateSpace::A, &StateSpace::B, &StateSpace::C, &StateSpace::D})
+    result.*part = detail::cleared(m.*part, rounding.*part);
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <titop/compiler/index_reduction/proper.hpp>
 #include <titop/compiler/solve/blame.hpp>
 #include <titop/compiler/solve/instant.hpp>
+#include <titop/compiler/solve/samples.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/support/some_names.hpp>
@@ -17,9 +18,6 @@ using Eigen::MatrixXd;
 using linalg::at;
 using linalg::kEpsilon;
 using solve::RowMatrix;
-
-/// The largest of several samples estimates rounding: of four, hardly all are small.
-constexpr int kSamples = 4;
 
 /// Coefficients with x = T xi + sum of R_j u^(j): y = ... + P_j u^(j).
 struct Expansion {
@@ -86,18 +84,12 @@ Expansion expand(const Factored& d, const InputDerivatives& v, std::optional<int
   return e;
 }
 
-/// Possible error of each P_j by rounding.
-std::vector<MatrixXd> rounding_of(const Factored& d, const InputDerivatives& v,
-                                  const Expansion& e) {
-  std::vector<MatrixXd> result(e.P.size());
-  for (int sample = 0; sample < kSamples; ++sample) {
-    const Expansion other = expand(d, v, sample);
-    for (std::size_t j = 0; j < result.size(); ++j) {
-      const MatrixXd off = (other.P[j] - e.P[j]).cwiseAbs();
-      result[j] = sample == 0 ? off : MatrixXd(result[j].cwiseMax(off));
-    }
-  }
-  return result;
+/// All P_j side by side.
+MatrixXd all_outputs(const Expansion& e) {
+  const Index inputs = e.P.front().cols();
+  MatrixXd all(e.P.front().rows(), inputs * std::ssize(e.P));
+  for (Index j = 0; j < std::ssize(e.P); ++j) all.middleCols(inputs * j, inputs) = e.P[at(j)];
+  return all;
 }
 
 const Hidden* first_with(const InputDerivatives& v, Index input) {
@@ -118,13 +110,15 @@ Mistake improper(const Skeleton& k, const Factored& d, const Hidden* c, Index ou
 
 void refuse_derivatives(const Skeleton& k, const Factored& d, const InputDerivatives& v,
                         const Expansion& e) {
-  bool any = false;
-  for (std::size_t j = 1; j < e.P.size(); ++j) any = any || !e.P[j].isZero(0);
-  if (!any) return;
-  const std::vector<MatrixXd> rounding = rounding_of(d, v, e);
+  const MatrixXd all = all_outputs(e);
+  const Index inputs = e.P.front().cols();
+  if (all.rightCols(all.cols() - inputs).isZero(0)) return;
+  const MatrixXd clear = cleared(all, largest_of_samples([&](int sample) {
+                                   return MatrixXd(all_outputs(expand(d, v, sample)) - all);
+                                 }));
   const auto derivatives = [&](Index i, Index j) {
     for (std::size_t n = e.P.size(); n-- > 1;)
-      if (std::abs(e.P[n](i, j)) > linalg::kNoise * rounding[n](i, j)) return n;
+      if (clear(i, inputs * static_cast<Index>(n) + j) != 0) return n;
     return std::size_t{0};
   };
   std::vector<Mistake> mistakes;  // the first scalar pair of each input and output

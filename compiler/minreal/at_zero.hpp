@@ -1,8 +1,8 @@
 #pragma once
 
 #include <string>
-#include <titop/compiler/certificate/sampled.hpp>
 #include <titop/compiler/minreal/minimize.hpp>
+#include <titop/compiler/minreal/sampled.hpp>
 #include <vector>
 
 /// States without effect on the transfer that leave before any eigenvalue is computed: by the

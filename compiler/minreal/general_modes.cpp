@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <titop/compiler/certificate/sampled.hpp>
 #include <titop/compiler/minreal/clusters.hpp>
 #include <titop/compiler/minreal/pole_clusters.hpp>
+#include <titop/compiler/solve/samples.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
 

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <titop/compiler/certificate/sampled.hpp>
 #include <titop/compiler/minreal/clusters.hpp>
 #include <titop/compiler/minreal/independent_rows.hpp>
 #include <titop/compiler/minreal/staircase.hpp>
+#include <titop/compiler/solve/samples.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/linalg/similarity_scaling.hpp>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <optional>
-#include <titop/compiler/certificate/sampled.hpp>
+#include <titop/compiler/minreal/sampled.hpp>
 #include <titop/graph/state_space.hpp>
 #include <vector>
 

@@ -3,6 +3,7 @@
 #include <titop/compiler/certificate/residual.hpp>
 #include <titop/compiler/minreal/clusters.hpp>
 #include <titop/compiler/minreal/pole_clusters.hpp>
+#include <titop/compiler/solve/samples.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/linalg/schur.hpp>
@@ -175,19 +176,16 @@ ClusterShare share(const PoleClusters& p, const Indices& cluster, int component,
   return s;
 }
 
-/// First-order effect of an error E of A on the cluster's A, B and C.
-struct Off {
-  double A;
-  VectorXd B, C;
-};
-Off off(const ClusterShare& s, const MatrixXd& E) {
+/// First-order effect of an error E of A on the cluster's A, the columns of its B and rows of its
+/// C.
+VectorXd off(const ClusterShare& s, const MatrixXd& E) {
   const MatrixXcd X = linalg::sylvester(s.T_in, s.T_out, s.W_in * E * s.V_out),
                   Y = linalg::sylvester(s.T_out, s.T_in, -s.W_out * E * s.V_in);
-  return {(s.W * E * s.Q).norm(), (s.G * X * s.W_out * s.B).colwise().norm(),
-          (s.C * s.V_out * Y * s.G_inverse).rowwise().norm()};
+  VectorXd all(1 + s.B.cols() + s.C.rows());
+  all << (s.W * E * s.Q).norm(), (s.G * X * s.W_out * s.B).colwise().norm().transpose(),
+      (s.C * s.V_out * Y * s.G_inverse).rowwise().norm();
+  return all;
 }
-
-constexpr int kSamples = 4;
 
 MatrixXd error_like(const MatrixXd& A, int sample) {
   detail::SteadyRandom random(sample);
@@ -213,17 +211,13 @@ void add_share(const ClusterShare& s, OwnModel& own) {
   m.A_size = std::max(m.A_size, s.A.norm());
   m.B_size += s.B.colwise().norm().transpose();
   m.C_size += s.C.rowwise().norm();
-  Off most{0, kEpsilon * (s.W.cwiseAbs() * s.B.cwiseAbs()).colwise().norm(),
-           kEpsilon * (s.C.cwiseAbs() * s.Q.cwiseAbs()).rowwise().norm()};
-  for (int sample = 1; sample <= kSamples; ++sample) {
-    const Off one = off(s, error_like(s.A, sample));
-    most.A = std::max(most.A, one.A);
-    most.B = most.B.cwiseMax(one.B);
-    most.C = most.C.cwiseMax(one.C);
-  }
-  m.A_noise += most.A;
-  m.B_noise += most.B;
-  m.C_noise += most.C;
+  const VectorXd most =
+      detail::largest_of_samples([&](int sample) { return off(s, error_like(s.A, sample + 1)); });
+  const VectorXd of_B = kEpsilon * (s.W.cwiseAbs() * s.B.cwiseAbs()).colwise().norm().transpose(),
+                 of_C = kEpsilon * (s.C.cwiseAbs() * s.Q.cwiseAbs()).rowwise().norm();
+  m.A_noise += most(0);
+  m.B_noise += most.segment(1, of_B.size()).cwiseMax(of_B);
+  m.C_noise += most.tail(of_C.size()).cwiseMax(of_C);
 }
 
 }  // namespace

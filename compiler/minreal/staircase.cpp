@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <titop/compiler/certificate/sampled.hpp>
 #include <titop/compiler/minreal/staircase.hpp>
+#include <titop/compiler/solve/samples.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/rounding.hpp>
 #include <vector>

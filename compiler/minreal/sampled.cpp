@@ -1,21 +1,16 @@
 #include <cmath>
-#include <titop/compiler/certificate/sampled.hpp>
+#include <titop/compiler/minreal/sampled.hpp>
 #include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/support/steady_random.hpp>
 
 namespace titop::detail {
-namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr int kSampleCount = 4;
-
-}  // namespace
-
 Sampled sampled(const StateSpace& model, const StateSpace& rounding) {
   Sampled s{model, {}};
-  for (int i = 1; i <= kSampleCount; ++i) {
+  for (int i = 1; i <= kSamples; ++i) {
     detail::SteadyRandom random(i);
     StateSpace off = model;
     const auto add = [&](MatrixXd& m, const MatrixXd& sizes) {
@@ -33,10 +28,6 @@ Sampled sampled(const StateSpace& model, const StateSpace& rounding) {
   return s;
 }
 
-MatrixXd cleared(const MatrixXd& value, const MatrixXd& rounding) {
-  return (value.array().abs() <= kRoundingFactor * rounding.array()).select(0.0, value);
-}
-
 void clear_rounding(Sampled& s) {
   for (MatrixXd StateSpace::*part : {&StateSpace::A, &StateSpace::B, &StateSpace::C}) {
     MatrixXd& entries = s.model.*part;
@@ -46,7 +37,7 @@ void clear_rounding(Sampled& s) {
 }
 
 MatrixXd jittered(MatrixXd T, int sample) {
-  detail::SteadyRandom random(kSampleCount + 1 + sample);
+  detail::SteadyRandom random(kSamples + 1 + sample);
   for (Index c = 0; c < T.cols(); ++c)
     for (Index r = 0; r < T.rows(); ++r) T(r, c) *= 1 + 4 * linalg::kEpsilon * random.unit();
   return T;

@@ -1,20 +1,18 @@
 #pragma once
 
+#include <titop/compiler/solve/samples.hpp>
 #include <titop/graph/state_space.hpp>
 #include <vector>
 
 /// Effect of rounding on quantities derived from a model, by samples. For the compiler's own files.
 namespace titop::detail {
 
-/// Factor on the largest of a few samples of rounding: values below may be rounding alone.
-inline constexpr double kRoundingFactor = 32;
-
 /// A model, and samples of it with rounding of the given sizes added to its entries.
 struct Sampled {
   StateSpace model;
   std::vector<StateSpace> off;
 };
-/// `rounding`: of every entry; empty: 2.2e-16 of it. Four samples from fixed seeds.
+/// `rounding`: of every entry; empty: 2.2e-16 of it. From fixed seeds.
 Sampled sampled(const StateSpace& model, const StateSpace& rounding);
 
 /// Largest deviation from `value` among the values of `f` for the samples. It is the effect of
@@ -23,13 +21,9 @@ Sampled sampled(const StateSpace& model, const StateSpace& rounding);
 template <class Sample, class F>
 Eigen::MatrixXd rounding_of(const std::vector<Sample>& samples, const Eigen::MatrixXd& value,
                             const F& f) {
-  Eigen::MatrixXd most = Eigen::MatrixXd::Zero(value.rows(), value.cols());
-  for (const Sample& off : samples) most = most.cwiseMax((f(off) - value).cwiseAbs());
-  return most;
+  return largest_of_samples(
+      [&](int i) { return Eigen::MatrixXd(f(samples[static_cast<std::size_t>(i)]) - value); });
 }
-
-/// Sets values below kRoundingFactor times this rounding to 0.
-Eigen::MatrixXd cleared(const Eigen::MatrixXd& value, const Eigen::MatrixXd& rounding);
 
 /// Sets entries of the model at rounding level to 0.
 void clear_rounding(Sampled& sampled);
