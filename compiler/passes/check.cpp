@@ -81,8 +81,6 @@ Stage check(Stage stage) {
   if (!c.mistakes.empty()) throw Error(std::move(c.mistakes));
   note_rarely_meant(c, stage.values);
   stage.angles = rotation_angles(g, stage.values);
-  const std::vector<Note> degrees = degree_notes(stage.angles, stage.values);
-  c.notes.insert(c.notes.end(), degrees.begin(), degrees.end());
   note_stiff_points(c, stage.values);
   stage.notes.insert(stage.notes.end(), c.notes.begin(), c.notes.end());
   return stage;

@@ -63,7 +63,7 @@ struct Factored {
   int plans_renewed = 0;                                ///< by updates since
   std::vector<double> scaled_at;                        ///< parameters when the scaling was found
   solve::Health scaled_health;                          ///< of the factors then
-  std::vector<Note> notes;                              ///< of the passes, and of updates
+  std::vector<Note> notes;                              ///< of `digits`, and of updates
   std::vector<std::pair<std::string, double>> seconds;  ///< per pass
 
   mutable std::once_flag zeros_once;

@@ -191,7 +191,7 @@ std::shared_ptr<SystemData> compile_again(const SystemData& old,
   begin.motions = stage.motions;
   begin.opened = stage.opened;
   begin.by_differences = stage.by_differences;
-  std::ranges::copy_if(old.notes, std::back_inserter(begin.notes),
+  std::ranges::copy_if(stage.notes, std::back_inserter(begin.notes),
                        [](const Note& n) { return n.pass == "open"; });
   Options options = old.skeleton->options;
   options.dump_to.clear();

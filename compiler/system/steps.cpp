@@ -14,14 +14,6 @@
 
 namespace titop::steps {
 
-namespace {
-
-void add_notes(const std::vector<Note>& notes, Stage& stage) {
-  stage.notes.insert(stage.notes.end(), notes.begin(), notes.end());
-}
-
-}  // namespace
-
 Compiled layout(Compiled c) {
   detail::Skeleton& k = *c.skeleton;
   k.layout = detail::make_layout(k.stage.graph);
@@ -98,7 +90,9 @@ Compiled reduce(Compiled c) {
 bool is_overconstrained(const Compiled& c) { return !c.skeleton->stage.released.empty(); }
 
 Compiled forces(Compiled c) {
-  add_notes(detail::judge_internal_forces(*c.data), c.skeleton->stage);
+  const std::vector<Note> found = detail::judge_internal_forces(*c.data);
+  std::vector<Note>& notes = c.skeleton->stage.notes;
+  notes.insert(notes.end(), found.begin(), found.end());
   return c;
 }
 
@@ -110,12 +104,11 @@ bool has_data(const Compiled& c) {
 }
 
 Compiled digits(Compiled c) {
-  add_notes(detail::judge_data_digits(*c.data), c.skeleton->stage);
+  c.data->notes = detail::judge_data_digits(*c.data);
   return c;
 }
 
 Compiled certify(Compiled c) {
-  c.data->notes = c.skeleton->stage.notes;
   c.data->checked();
   return c;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <titop/compiler/certificate/without_rounding.hpp>
+#include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/realization/energy.hpp>
 #include <titop/compiler/realization/write_model.hpp>
 #include <titop/compiler/system/compile_graph.hpp>
@@ -199,8 +200,9 @@ const detail::Check& detail::SystemData::checked() const {
 
 const std::vector<Note>& detail::SystemData::noted() const {
   return all_notes.get([&] {
-    std::vector<Note> all = notes;
-    all.insert(all.end(), checked().notes.begin(), checked().notes.end());
+    std::vector<Note> all = passes::degree_notes(skeleton->stage.angles, numbers.parameters);
+    for (const std::vector<Note>* more : {&skeleton->stage.notes, &notes, &checked().notes})
+      all.insert(all.end(), more->begin(), more->end());
     return all;
   });
 }

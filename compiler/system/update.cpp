@@ -268,16 +268,6 @@ void refactor(const SystemData& old, const std::vector<int>& changed, SystemData
   d.plans_renewed = old.plans_renewed + (rescale || all);
 }
 
-/// The notes of angles in degrees: those of the old values are replaced.
-void renew_degree_notes(const Skeleton& k, ParameterValues before, SystemData& d) {
-  const auto& angles = k.stage.angles;
-  if (angles.empty()) return;
-  for (const Note& old : passes::degree_notes(angles, before))
-    std::erase_if(d.notes, [&](const Note& n) { return n.pass == old.pass && n.text == old.text; });
-  const std::vector<Note> now = passes::degree_notes(angles, d.numbers.parameters);
-  d.notes.insert(d.notes.end(), now.begin(), now.end());
-}
-
 }  // namespace
 
 std::shared_ptr<const SystemData> updated(const SystemData& old,
@@ -307,11 +297,7 @@ std::shared_ptr<const SystemData> updated(const SystemData& old,
   refactor(old, changed, *d);
   const solve::Health health = d->factors->health();
   if (health.singular) return again(kNoDigit);  // it may reduce: a mass of 0
-  d->notes = old.notes;
-  std::erase_if(d->notes, [](const Note& n) { return n.pass == "update" || n.pass == "digits"; });
-  renew_degree_notes(k, old.numbers.parameters, *d);
-  const std::vector<Note> digits = judge_data_digits(*d);
-  d->notes.insert(d->notes.end(), digits.begin(), digits.end());
+  d->notes = judge_data_digits(*d);
   d->notes.push_back(
       {Note::Kind::info, "update",
        fmt::format("{}: {} of {} fronts recomputed", text_of(k, changed, d->numbers.parameters),
