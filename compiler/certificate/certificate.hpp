@@ -17,8 +17,8 @@ struct Certificate {
   /// if digits may be lost. At an instant also the responses at s of the first two blocks of
   /// each type, against their A, B, C, D. Negative if not evaluated: there are no inputs, and an
   /// instant is not possible or may lose digits. Rounding gives about 1e-16 times the length of a
-  /// row. A residual above 1e-9 is corrected before it is reported: 1e4 times a sample of the
-  /// signals' rounding is subtracted, and residuals of over-constrained loops may be 1e-14 of the
+  /// row. A residual above 1e-9 is corrected before it is reported: 1e3 times a sample of the
+  /// signals' rounding is subtracted, and residuals of over-constrained loops may be 1.4e-14 of the
   /// largest translation, rotation, force or torque of all points. Rounding therefore does not
   /// explain a value above 1e-9.
   double residual = 0;
@@ -28,7 +28,7 @@ struct Certificate {
   bool at_instant = false;  ///< true: at an instant; false: at s
   /// Largest difference between the outputs of the transfer at that real s and those of the model
   /// that System::apply computes, for one random input, over the output's size (of one unit). Up to
-  /// 1e-9 it counts as 0; above, 1e4 times a sample of the rounding of both is subtracted, and up
+  /// 1e-9 it counts as 0; above, 1e3 times a sample of the rounding of both is subtracted, and up
   /// to 32 times the digits that double loses there (see the log) it is 0. The two share the
   /// blocks' matrices and the coefficients, but not the elimination, the integrals and the map of
   /// dependent states. Negative if not compared: at an instant, where `residual` itself checks the
@@ -46,7 +46,7 @@ struct Certificate {
   /// output, are left out (dense_log() lists them). Computed as the residual of the factors' states
   /// in the dense model, mapped to the outputs by the factors. Inputs are grouped by unit: random
   /// combinations of the three translations or rotations of a port; from the ninth unit on some
-  /// share a column. Outputs likewise; an output at rounding level, or at 1e-14 of its row and
+  /// share a column. Outputs likewise; an output at rounding level, or at 1.4e-14 of its row and
   /// column (a 0 after a rotation of frames), is measured relative to its neighbours. Independent
   /// of the units of inputs and outputs; in other units of states and time other entries are
   /// rounded. Above 1e-9 and up to 100 states it is at most 32 times the error of the model's own

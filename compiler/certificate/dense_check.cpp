@@ -240,7 +240,7 @@ DenseError worst_of(const std::vector<Sample>& samples) {
     if (found.error > so_far.error) so_far = found, so_far.s = s;
   };
   for (const Sample& p : samples) {
-    if (counts(p)) keep(relative(p.off, largest, kOfLargest), p.s, worst.beside_largest);
+    if (counts(p)) keep(relative(p.off, largest, kProductRounding), p.s, worst.beside_largest);
     keep(relative(p.off, p.sizes, 0), p.s, worst.where_small);
   }
   return worst;

@@ -165,7 +165,7 @@ struct Residual {
       if (const double off = b.row[i].off();
           off > kEnough * b.row[i].magnitude &&
           off > kLeftOfZero * around.size(signal, b.entry(i)) &&
-          !(off <= kOfLargest * size_of_kind(signal, b.entry(i))))
+          !(off <= kProductRounding * size_of_kind(signal, b.entry(i))))
         return false;
     return true;
   }

@@ -32,8 +32,9 @@ struct WrittenResidual {
 
 /// Largest |left - right| over (sum of magnitudes of the terms) of all equations of Stage::source
 /// and all rows of all blocks. Zeros at rounding level do not count, nor, if a sample of rounding
-/// is known, a difference below kNoise times its effect on the terms, or below 1e-14 of the largest
-/// of its kind in over-constrained chains. Values that are not finite count as 1. O(terms).
+/// is known, a difference below kNoise times its effect on the terms, or below kProductRounding of
+/// the largest of its kind in over-constrained chains. Values that are not finite count as 1.
+/// O(terms).
 WrittenResidual written_residual(const Factored& d, const Signals& signals);
 
 }  // namespace titop::detail

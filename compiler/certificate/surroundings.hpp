@@ -2,6 +2,7 @@
 
 #include <titop/compiler/solve/factored.hpp>
 #include <titop/compiler/solve/null_rows.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <vector>
 
 /// Sizes of the unknowns that are eliminated together with an unknown: the scale of its rounding.
@@ -12,9 +13,9 @@ namespace titop::detail {
 using solve::kLeftOfZero;
 
 /// Times the largest of its kind, or the geometric mean of the largest in its row and column:
-/// possible rounding of a 0 that chains enforce, or rotations (cos(pi / 2) = 6e-17). Fifty units of
-/// rounding, typical of a sum around a chain of some tens of joints.
-inline constexpr double kOfLargest = 1e-14;
+/// possible rounding of a 0 that chains enforce, or rotations (cos(pi / 2) = 6e-17), as of a sum
+/// around a chain of some tens of joints.
+using linalg::kProductRounding;
 
 /// Size around an unknown in the elimination, in the unknown's own unit (by the scaling of the
 /// fronts' columns): the largest of its front; if all that the front shares with its parent is

@@ -106,7 +106,6 @@ struct Reference {
 };
 std::optional<Reference> reference(const Factored& d, const StateSpace& written,
                                    std::complex<double> s) {
-  constexpr double kNeighbours = 1e-15;  // of those in row and column: rounding of a 0
   using T = std::complex<double>;
   const Eigen::Index inputs = written.B.cols();
   try {
@@ -116,7 +115,7 @@ std::optional<Reference> reference(const Factored& d, const StateSpace& written,
     const MatrixXd around = size.rowwise().maxCoeff().cwiseSqrt() *
                             Eigen::RowVectorXd(size.colwise().maxCoeff().cwiseSqrt());
     MatrixXd allowed = kAnotherDigit * (refined_transfers(written, {s}).front() - G).cwiseAbs() +
-                       kUnchanged * size + kNeighbours * around +
+                       kUnchanged * size + linalg::kProductRounding * around +
                        kNoise * point.rounding().cwiseAbs();
     if (!allowed.allFinite()) return {};
     return Reference{std::move(G), std::move(allowed)};

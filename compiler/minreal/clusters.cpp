@@ -13,8 +13,6 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
-constexpr double kOneMode = 1e-6;  ///< of a vector's largest entry: no rounding in another part
-
 using linalg::at;
 
 template <class Matrix>
@@ -27,7 +25,7 @@ Matrix turned(const Matrix& b, const Matrix& c) {
     result = svd.matrixU();
     const Eigen::VectorXd sigma = svd.singularValues();
     reached = 0;
-    while (reached < sigma.size() && sigma(reached) > kNoPart * sigma(0)) ++reached;
+    while (reached < sigma.size() && sigma(reached) > linalg::kHalfDigits * sigma(0)) ++reached;
   }
   if (c.cols() > 0 && reached > 1) {
     const Matrix seen = result.leftCols(reached).adjoint() * c;
@@ -61,7 +59,7 @@ UncoupledParts find_parts(const MatrixXd& A, const MatrixXd& vectors, const Mode
   for (Index j = 0; j < m.size(); ++j) {
     const double most = vectors.col(j).maxCoeff(&state[at(j)]);
     for (Index i = 0; i < A.rows(); ++i)
-      if (vectors(i, j) > kOneMode * most) join(part[at(i)], part[at(state[at(j)])]);
+      if (vectors(i, j) > kClearRank * most) join(part[at(i)], part[at(state[at(j)])]);
   }
   for (Index j = 0; j < m.size(); ++j)
     for (Index i = 0; i < j; ++i)

@@ -9,8 +9,8 @@
 namespace titop::minreal {
 
 using linalg::kEpsilon;
-inline constexpr double kNoPart = 1e-8;     ///< of a cluster's largest: smaller ones do not count
-inline constexpr double kClearRank = 1e-6;  ///< least singular value that is no rounding
+inline constexpr double kClearRank =
+    1e-6;  ///< least singular value, or entry of a unit vector, that is no rounding
 inline constexpr double kClearRow = 1e-10;  ///< likewise of a whole row
 inline const char* const kAtZero = "its pole is at 0";
 

@@ -173,7 +173,7 @@ IndependentRows independent_rows(const MatrixXd& M, const MatrixXd& rounding, co
     const int row = others.number[at(k)];
     const double size = scaled.row(row).norm() * weight(row), bound = others.noise(k) / size,
                  own = others.rows.row(k).norm() / size;
-    if (own <= detail::kRoundingFactor * bound && bound <= kRemovable)
+    if (own <= detail::kRoundingFactor * bound && bound <= kWarn)
       r.out.push_back({row, own, bound});
     else
       r.keep.push_back(row), r.doubtful.push_back({row, own, bound});

@@ -14,9 +14,6 @@ using Eigen::VectorXd;
 
 /// Far narrower than the spacing of doubles at a pole: negligible in effect, but no proof of a 0.
 constexpr double kNothing = 1e-17;
-/// Rounding's part of a negligible mode: above it, an apparently negligible mode may have an
-/// effect.
-constexpr double kNarrow = 1e-14;
 constexpr double kFarOff = 1e-6;  ///< above it not even exact arithmetic removes a mode
 
 using linalg::at;
@@ -80,16 +77,18 @@ Verdict judge(const ModeSet& m, Index j, double resolution) {
   v.bound = std::max(c.size * b.noise, b.size * c.noise) / (2 * m.lambda(j));
   v.unreachable = inputs && (!outputs || b.size <= c.size);
   const bool nothing = v.visibility <= 10 * v.bound || v.visibility <= kNothing;
-  v.drop = (nothing && v.visibility <= kRemovable && v.bound <= kRemovable) ||
-           v.visibility <= resolution;
+  v.drop = (nothing && v.visibility <= kWarn && v.bound <= kWarn) || v.visibility <= resolution;
   const bool small =
-      v.visibility <= kRemovable && v.visibility <= 1e4 * std::max(v.bound, kEpsilon * kEpsilon);
+      v.visibility <= kWarn && v.visibility <= kClearly * std::max(v.bound, kEpsilon * kEpsilon);
   v.doubtful = !v.drop && (small || v.visibility <= 10 * v.bound);
   return v;
 }
 
-/// Zero to double precision, and too narrow to matter otherwise.
-bool is_zero(const Verdict& v) { return v.visibility <= v.bound && v.bound <= kNarrow; }
+/// Zero to double precision, and too narrow to matter otherwise: with more rounding, an apparently
+/// negligible mode may have an effect.
+bool is_zero(const Verdict& v) {
+  return v.visibility <= v.bound && v.bound <= linalg::kProductRounding;
+}
 
 /// Why a mode was removed, or is near the limit.
 std::string reason(const Verdict& v, bool hardly) {

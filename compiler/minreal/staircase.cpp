@@ -58,7 +58,7 @@ Stairs stairs(const DrivenSide& d, double times, bool careful) {
   const double own = A.norm();
   ScaledPorts step = first_step(d);
   while (s.reached < k) {
-    if (careful && step.relative > kRemovable) {
+    if (careful && step.relative > kWarn) {
       s.reached = k;
       return s;
     }

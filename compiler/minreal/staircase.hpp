@@ -1,14 +1,16 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <titop/compiler/certificate/residual.hpp>
 
 /// The minimal part of a small model whose poles are one cluster, by orthogonal transformations.
 /// For the compiler's own files.
 namespace titop::minreal {
 
 inline constexpr double kClearly = 1e4;  ///< times rounding: certainly larger
-/// Visibility of a mode, and rounding of a rank relative to its size: above it nothing is removed.
-inline constexpr double kRemovable = 1e-9;
+/// The accuracy that is promised: above it, of the visibility of a mode, or of a rank's rounding
+/// relative to its size, nothing is removed.
+using detail::kWarn;
 
 /// xdot = A x + B u, y = C x, and the bound of its rounding.
 struct ClusterModel {

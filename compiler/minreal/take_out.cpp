@@ -17,7 +17,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kSmallShare = 1e-4;  ///< of a mode in another by rounding, at most
-constexpr double kNoise = 1e-14;      ///< of the fastest mode: rounding of a model's matrix
 
 using linalg::at;
 
@@ -249,7 +248,7 @@ void take_out(const Symmetric& s, const std::vector<Verdict>& verdicts, StateSpa
     const ModeVectors<MatrixXd> all{s.Q.transpose(), VectorXd::Ones(s.Q.cols()),
                                     s.Q.transpose() * ports};
     return leaving(all, leave, staying(s.modes, leave), s.modes,
-                   kNoise * s.modes.lambda.maxCoeff());
+                   linalg::kProductRounding * s.modes.lambda.maxCoeff());
   };
   const MatrixXd left = modes(s.D_inverse * model.B(s.qdot, Eigen::all), unreachable) * s.D_inverse;
   const MatrixXd right = s.D * modes(shown.transpose(), unseen).transpose();
@@ -292,9 +291,10 @@ void take_out(const General& g, const std::vector<Verdict>& verdicts, StateSpace
   };
   const auto relations = [&](const MatrixXcd& vectors, const VectorXd& sizes,
                              const MatrixXcd& ports, const std::vector<Index>& leave) {
-    return real_rows(leaving(ModeVectors<MatrixXcd>{vectors, sizes, ports}, leave,
-                             staying(g.modes, leave), g.modes, kNoise * g.modes.lambda.maxCoeff()),
-                     leave);
+    return real_rows(
+        leaving(ModeVectors<MatrixXcd>{vectors, sizes, ports}, leave, staying(g.modes, leave),
+                g.modes, linalg::kProductRounding * g.modes.lambda.maxCoeff()),
+        leave);
   };
   const VectorXd& scale = g.e.scale;
   const MatrixXcd V = g.e.V.transpose();

@@ -26,7 +26,6 @@ using linalg::at;
 /// Part of an entry of the transfer in which finer arithmetic and the dense model must agree for
 /// the model to be certain, and least visibility of a mode that counts then.
 constexpr double kCertain = 1e-6;
-constexpr double kMoving = 1e-9;  ///< of an entry: a smaller change with s may be rounding
 
 /// The reason by the certificate of the factors why the order may be in doubt; null: none.
 const char* digits_lost(const SystemData& d) {
@@ -49,7 +48,7 @@ StateSpace with_certain_ports(const SystemData& d, const StateSpace& m) {
     const MatrixXd change = (other_exact - exact).cwiseAbs();
     const MatrixXd off = (other_dense - dense - (other_exact - exact)).cwiseAbs();
     certain = certain.array() ||
-              (change.array() > kMoving * size.array() && off.array() <= kCertain * change.array());
+              (change.array() > kWarn * size.array() && off.array() <= kCertain * change.array());
   }
   StateSpace part{m.A, {}, {}, {}, m.states, {}, {}, m.rates};
   std::vector<int> in, out;
