@@ -7,6 +7,7 @@
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/linalg/schur.hpp>
+#include <titop/graph/linalg/similarity_scaling.hpp>
 #include <titop/graph/linalg/spectral.hpp>
 #include <titop/graph/support/steady_random.hpp>
 
@@ -21,23 +22,6 @@ using linalg::at;
 using Indices = std::vector<Index>;
 
 constexpr double kWidest = 1e-3;  ///< of a matrix's norm: spread of a multiple pole by rounding
-
-std::vector<std::vector<int>> find_components(const MatrixXd& A) {
-  std::vector<std::vector<int>> result;
-  std::vector<char> seen(at(A.rows()), 0);
-  for (int first = 0; first < A.rows(); ++first) {
-    if (seen[at(first)]) continue;
-    std::vector<int> all{first};
-    seen[at(first)] = 1;
-    for (std::size_t k = 0; k < all.size(); ++k)
-      for (int j = 0; j < A.rows(); ++j)
-        if (!seen[at(j)] && (A(all[k], j) != 0 || A(j, all[k]) != 0))
-          seen[at(j)] = 1, all.push_back(j);
-    std::sort(all.begin(), all.end());
-    result.push_back(std::move(all));
-  }
-  return result;
-}
 
 struct PoleCluster {
   Indices poles;
@@ -116,7 +100,7 @@ PoleClusters pole_clusters(const MatrixXd& A) {
   p.e.values.resize(n);
   p.e.V = p.e.W = p.T = MatrixXcd::Zero(n, n);
   std::vector<PoleCluster> clusters;
-  for (const std::vector<int>& states : find_components(A))
+  for (const std::vector<int>& states : linalg::uncoupled_parts(A))
     add_component(scaled, states, p, clusters);
   join(p, clusters);
   for (PoleCluster& c : clusters)
