@@ -30,9 +30,9 @@ using Eigen::MatrixXd;
 using namespace loops;
 using linalg::at;
 
-constexpr double kGap = 1e-6;  ///< a loop that is open by more does not close
-/// The same of one through a body with springs along all six axes, which constrains nothing: its
-/// force leaves a torque of force times gap, and momentum is lost by this share.
+/// Largest gap of a loop through a body with springs along all six axes, which constrains nothing:
+/// its force leaves a torque of force times gap, and momentum is lost by this share. Other loops
+/// close to the digits of typed numbers.
 constexpr double kGapOfSpring = 1e-5;
 
 // --- geometry -----------------------------------------------------------------------------------
@@ -97,7 +97,8 @@ struct ChainChecker {
   }
 
   void check_gap(const Closing& c) {
-    const double most = c.gap > kGap && has_spring(c.form) ? kGapOfSpring : kGap;
+    const double most =
+        c.gap > linalg::kTextDigits && has_spring(c.form) ? kGapOfSpring : linalg::kTextDigits;
     if (c.gap > most)
       refuse(c,
              fmt::format("{} closes a chain whose ends do not meet: gap {}, {:.1e} of its size, "
@@ -105,7 +106,7 @@ struct ChainChecker {
                          target(c), gap_size(c, c.gap), c.gap, gap_size(c, most)),
              "check the lengths and rotations around the chain; the mounting rotations give the "
              "joints' posture");
-    else if (c.gap > kExactGap)
+    else if (c.gap > kMatrixDigits)
       notes.push_back({Note::Kind::warning, "chains",
                        fmt::format("{} closes its chain only to {:.1e} of its size, {}: a force "
                                    "across it leaves a torque of force times gap",
@@ -291,7 +292,7 @@ AtRest release_redundant(Stage& stage, const std::vector<Closing>& closings) {
                          "(smallest kept {:.1e}, largest dropped {:.1e}, tolerance {:.0e}): give "
                          "angles and lengths to all their digits",
                          name, rows - r.directions.rows(), rows, r.weakest, r.dropped,
-                         kRankTolerance)});
+                         kMatrixDigits)});
       if (r.directions.rows() == 0) continue;
       const EquationSplit parts = split(r.directions, factors.row[i]);
       stage.notes.push_back(

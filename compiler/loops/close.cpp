@@ -149,7 +149,7 @@ Stage close(Stage stage) {
         {Note::Kind::warning, "close",
          fmt::format("the chain closed by {} is near a singular posture (pivot {:.1e}, tolerance "
                      "{:.0e}): order {}, or {} if that were taken for {}",
-                     d.joints, d.pivot, kRankTolerance, order, d.taken ? order + 2 : order - 2,
+                     d.joints, d.pivot, kMatrixDigits, order, d.taken ? order + 2 : order - 2,
                      d.taken ? "nothing" : "a constraint")});
   if (!stage.dependents.empty())
     stage.notes.push_back({Note::Kind::info, "close",

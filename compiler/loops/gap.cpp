@@ -2,6 +2,7 @@
 #include <titop/compiler/loops/gap.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::loops {
 namespace {
@@ -20,7 +21,7 @@ MatrixXd moved_by_angles(const Form& form, const VectorXd& scale) {
       Eigen::RowVectorXd v = matrix.col(j).cwiseProduct(scale).transpose();
       const double size = v.norm();
       for (int twice = 0; twice < 2; ++twice) v -= (v * basis.transpose()) * basis;
-      if (!(v.norm() > kExactGap * size)) continue;
+      if (!(v.norm() > linalg::kMatrixDigits * size)) continue;
       basis.conservativeResize(basis.rows() + 1, Eigen::NoChange);
       basis.bottomRows(1) = v.normalized();
     }
@@ -43,7 +44,7 @@ Gap gap_of(const MatrixXd& gap, const Form& form, const std::vector<int>& units,
   result.off = (scaled - taken).cwiseAbs().maxCoeff(&worst, &column);
   if (units[at(worst)] == 0) result.length = length;
   // Rounding must not become a constraint on the meeting point.
-  const MatrixXd exact = (taken.array().abs() <= kExactGap).select(0.0, taken);
+  const MatrixXd exact = (taken.array().abs() <= linalg::kMatrixDigits).select(0.0, taken);
   if (!exact.isZero(0))
     result.taken = rows.cwiseInverse().asDiagonal() * exact * columns.cwiseInverse().asDiagonal();
   return result;

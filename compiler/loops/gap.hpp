@@ -5,8 +5,6 @@
 
 namespace titop::loops {
 
-constexpr double kExactGap = 1e-9;  ///< a gap that is larger is not rounding
-
 /// Gap of the way round a chain, as a matrix times the position of its meeting point. 0 if the
 /// geometry closes, unless ties leave translations free: these do not determine how far apart their
 /// points are, and the ways do not have the lever arm.

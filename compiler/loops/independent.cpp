@@ -20,7 +20,7 @@ using linalg::at;
 /// Fraction of the best pivot, for a pivot to be taken before all are known: a dependent coordinate
 /// is then at most about ten times those that it depends on, in units of energy, and the model
 /// loses at most a digit.
-constexpr double kShare = 0.1;
+using linalg::kOneDigit;
 constexpr std::size_t kLookedAt = 8;  ///< neighbours per column, for one to merge with
 
 /// Rows of one front in which coordinates had their pivots: upper triangular in these.
@@ -83,8 +83,8 @@ struct Fronts {
   bool take_unknowns(const RowBlock& front, bool last, Reflections& e) {
     const auto is_unknown = [&](int c) { return role[at(c)] == Role::unknown; };
     const auto unknowns = own(front, is_unknown);
-    const double left = e.take(unknowns, last ? kRankTolerance : kGoodPivot);
-    if (left > kRankTolerance) return false;
+    const double left = e.take(unknowns, last ? kMatrixDigits : kGoodPivot);
+    if (left > kMatrixDigits) return false;
     result.dropped = std::max(result.dropped, left);
     return std::count_if(front.columns.begin(), front.columns.end(), is_unknown) ==
            static_cast<std::ptrdiff_t>(unknowns.size());
@@ -113,7 +113,7 @@ struct Fronts {
     if (shared_preferred(front).empty()) {
       std::vector<int> rivals(front.columns.size());
       std::iota(rivals.begin(), rivals.end(), 0);
-      e.take(all, kGoodPivot, {soft(front.columns), kShare, std::move(rivals)});
+      e.take(all, kGoodPivot, {soft(front.columns), kOneDigit, std::move(rivals)});
     }
     return e.weakest();
   }
@@ -123,7 +123,7 @@ struct Fronts {
   double take_last(const RowBlock& front, const std::array<std::vector<int>, 3>& choices,
                    Reflections& e) {
     Reflections rank = e;
-    result.dropped = std::max(result.dropped, rank.take(choices.back(), kRankTolerance));
+    result.dropped = std::max(result.dropped, rank.take(choices.back(), kMatrixDigits));
     Reflections::PivotChoice choice{soft(front.columns)};
     for (choice.most = e.done() + 1; choice.most <= rank.done(); ++choice.most) {
       const double least = kGoodPivot * e.largest(choices.back());
@@ -158,8 +158,8 @@ struct Fronts {
       if (!e.taken(i)) (uses.alone(front.columns[at(i)]) ? alone : shared).push_back(i);
     Reflections waiting(std::move(rows));
     const Eigen::VectorXd worth = soft(front.columns);
-    waiting.take(shared_preferred(front), kRankTolerance, {worth, kGoodPivot, alone});
-    waiting.take(shared, kRankTolerance, {worth, 1 / kShare, alone});
+    waiting.take(shared_preferred(front), kMatrixDigits, {worth, kGoodPivot, alone});
+    waiting.take(shared, kMatrixDigits, {worth, 1 / kOneDigit, alone});
     const Index wait = waiting.done();
     Reflections o(waiting.matrix().bottomRows(waiting.matrix().rows() - wait));
     o.take(alone, kGoodPivot, {worth});

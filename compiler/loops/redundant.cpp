@@ -42,7 +42,7 @@ Redundant by_singular_values(const MatrixXd& rows, MatrixXd& known) {
   const Eigen::JacobiSVD<MatrixXd> svd(left, Eigen::ComputeFullU | Eigen::ComputeThinV);
   const VectorXd& sigma = svd.singularValues();
   Index rank = 0;
-  while (rank < sigma.size() && sigma(rank) > kRankTolerance) ++rank;
+  while (rank < sigma.size() && sigma(rank) > kMatrixDigits) ++rank;
   if (rank > 0) result.weakest = sigma(rank - 1);
   if (rank < sigma.size()) result.dropped = sigma(rank);
   // Directions of small singular values contain amplified rounding.

@@ -22,7 +22,7 @@ struct Redundancy {
 
 /// Rows with columns that no others have are independent of them: they are set aside
 /// until every remaining column has more than one block, or the rows there less than full rank
-/// (pivots of 1e-3). The rest is decided in order, by singular values above kRankTolerance of the
+/// (pivots of 1e-3). The rest is decided in order, by singular values above kMatrixDigits of the
 /// new part; decided rows are set aside in turn, as soon as no block to come has their columns. A
 /// column is held if its unit vector is in the span of all rows. O(entries) if every chain has a
 /// body of its own; else rows * open^2, `open` the columns between a block and those to come: a few

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <titop/graph/linalg/rounding.hpp>
 #include <utility>
 #include <vector>
 
@@ -8,7 +9,7 @@ namespace titop::loops {
 
 /// Ranks are decided at this, absolutely, after scaling to 1: exact data give pivots of 1e-3 and
 /// more or 1e-15 and less.
-constexpr double kRankTolerance = 1e-9;
+using linalg::kMatrixDigits;
 
 /// Decisions by pivots between these limits are doubtful, and reported: kept ones below the first
 /// (pi / 2 typed as 1.5708 tilts an axis by 4e-6), dropped ones above the second.

@@ -100,7 +100,7 @@ class Span {
  public:
   explicit Span(const MatrixXd& m) : qr_(m) {
     while (rank_ < std::min(m.rows(), m.cols()) &&
-           std::abs(qr_.matrixR()(rank_, rank_)) > kRankTolerance)
+           std::abs(qr_.matrixR()(rank_, rank_)) > kMatrixDigits)
       ++rank_;
   }
   /// Dimensions outside the span.
