@@ -31,18 +31,15 @@ struct Answer {
 Answer exact(const LossyRow& row, Double at) {
   const Big s = big(at), inertia = Big(kMass) * s * s, base = Big(kBaseMass) * s * s,
             k = Big(kStiffness) + Big(row.damping) * s;
-  Big below, Z = inertia;  // displacement of the mass before over that of the present one
-  std::vector<Big> ratio;
-  double term = 0;
-  for (int i = 0; i < row.n; ++i) {
-    below = i > 0                              ? Big(k / (Z + k))
-            : row.base == LossyRow::Base::held ? Big(0)
-                                               : Big(k / (base + k));
-    ratio.push_back(below);
-    const Big spring = k * (Big(1) - below);
-    term = size(inertia) + size(spring);
+  // Displacement of the mass (or base) before each mass over its own.
+  std::vector<Big> ratio{row.base == LossyRow::Base::held ? Big(0) : Big(k / (base + k))};
+  Big spring = k * (Big(1) - ratio[0]), Z = inertia + spring;
+  for (int i = 1; i < row.n; ++i) {
+    ratio.push_back(k / (Z + k));
+    spring = k * (Big(1) - ratio.back());
     Z = inertia + spring;
   }
+  const double term = size(inertia) + size(spring);
   const bool forced = row.tip == LossyRow::Tip::force;
   const Big x = forced ? Big(Big(1) / Z) : Big(Big(1) / (s * s));
   Big first = x;
