@@ -2,51 +2,12 @@
 #include <tuple>
 
 #include "generate/assembly.hpp"
+#include "generate/dice.hpp"
+#include "generate/draw_laws.hpp"
 #include "generate/generate.hpp"
 
 namespace titop::generate {
 namespace {
-
-/// Whole numbers and ratios of them.
-class Dice : public Mersenne {
- public:
-  using Mersenne::Mersenne;
-  int between(int low, int high) { return low + below(high - low + 1); }
-  bool chance(int percent) { return below(100) < percent; }
-  /// From 2^low to 2^high, five bits.
-  Ratio octaves(int low, int high) {
-    const std::int64_t mantissa = 16 + below(16);
-    const int e = low + below(high - low) - 4;
-    return e >= 0 ? Ratio(mantissa << e) : Ratio(mantissa, std::int64_t(1) << -e);
-  }
-  /// From -1 to 1 in steps of 1/64.
-  Ratio fraction() { return {between(-64, 64), 64}; }
-  Vec3 vector() { return {fraction(), fraction(), fraction()}; }
-  /// Rational rotations from whole quaternions: quarter turns and 3-4-5.
-  Mat3 rotation() {
-    static constexpr int kQuaternions[][4] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {1, 0, 1, 0},
-                                              {1, 0, 0, 1}, {1, 1, 1, 1}, {0, 1, 0, 0},
-                                              {2, 1, 0, 0}, {2, 0, 1, 0}, {2, 0, 0, -1}};
-    const auto& k = kQuaternions[below(9)];
-    const std::int64_t w = k[0], x = k[1], y = k[2], z = k[3], n = w * w + x * x + y * y + z * z;
-    const auto row = [n](std::int64_t a, std::int64_t b, std::int64_t c) {
-      return Vec3{Ratio(a, n), Ratio(b, n), Ratio(c, n)};
-    };
-    return {row(w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)),
-            row(2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)),
-            row(2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z)};
-  }
-  Vec3 direction() {
-    static const Vec3 kDirections[] = {{1, 0, 0},
-                                       {0, 1, 0},
-                                       {0, 0, 1},
-                                       {Ratio(3, 5), 0, Ratio(4, 5)},
-                                       {0, Ratio(-4, 5), Ratio(3, 5)},
-                                       {Ratio(1, 3), Ratio(2, 3), Ratio(2, 3)},
-                                       {Ratio(2, 7), Ratio(-3, 7), Ratio(6, 7)}};
-    return kDirections[below(7)];
-  }
-};
 
 class Artist {
  public:
@@ -167,29 +128,15 @@ class Artist {
       read({.of = PlannedReading::Of::acceleration, .point = {i, "child"}}, 1);
   }
 
-  /// A controller of order 1 or 2. Its contribution to the mass is positive, so that the loop is
-  /// never singular.
   Control control(bool acceleration, int block) {
     Control c{.name = fresh("K"), .block = block};
     c.law = acceleration ? Control::Law::acceleration : Control::Law::position;
-    const int n = dice_.between(1, 2);
-    const Ratio decay = dice_.octaves(-1, 4);
-    c.A.assign(static_cast<std::size_t>(n), std::vector<Ratio>(static_cast<std::size_t>(n)));
-    c.B.assign(static_cast<std::size_t>(n), {Ratio(1)});
-    c.C.assign(1, {});
-    for (int i = 0; i < n; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      c.A[k][k] = -decay;
-      c.B[k][0] = dice_.fraction();
-      c.C[0].push_back(dice_.fraction() * Ratio(acceleration ? 1 : 64, 8));
-    }
-    if (n == 2) c.A[0][1] = dice_.fraction(), c.A[1][0] = -c.A[0][1];
-    c.D = {{acceleration ? dice_.octaves(-3, 1) : dice_.octaves(0, 4)}};
+    draw_small_law(dice_, c);
     return c;
   }
 
   /// A dense controller at every other body: around its position (spring-masses), around one or two
-  /// accelerations, or out of the loops. Of four one is stable, one unstable, one has poles at 0.
+  /// accelerations, or out of the loops.
   template <class Place>
   void dense_control(int i, Place place) {
     if (!dice_.chance(plan_.controls.empty() ? 80 : 40)) return;
@@ -198,40 +145,16 @@ class Artist {
     Control c{.name = fresh("K"), .block = i};
     c.at = {place(i)};
     if (kind == 0) {
-      fill(c, Ratio(8), dice_.octaves(0, 4));
+      draw_dense_law(dice_, c, o_.states, Ratio(8), dice_.octaves(0, 4));
     } else {
       c.law = kind == 1 ? Control::Law::acceleration : Control::Law::filter;
       if (dice_.chance(50)) c.at.push_back(place(scalar ? dice_.below(o_.bodies) : any_body()));
-      fill(c, Ratio(1, 8), dice_.octaves(-3, 1));
+      draw_dense_law(dice_, c, o_.states, Ratio(1, 8), dice_.octaves(-3, 1));
     }
     plan_.controls.push_back(c);
     if (kind == 2)
       read({.of = PlannedReading::Of::control, .point = {int(plan_.controls.size()) - 1, ""}},
            static_cast<int>(c.size()));
-  }
-
-  /// Matrices of the size of `at`. The symmetric part of D is positive: the loop is never singular.
-  void fill(Control& c, const Ratio& gain, const Ratio& direct) {
-    const auto n = static_cast<std::size_t>(o_.states), m = c.at.size();
-    const auto matrix = [&](std::size_t rows, std::size_t cols, const Ratio& size) {
-      RatioMatrix M(rows, std::vector<Ratio>(cols));
-      for (auto& row : M)
-        for (Ratio& x : row) x = dice_.fraction() * size;
-      return M;
-    };
-    c.A = matrix(n, n, 4);
-    const int kind = dice_.below(4);
-    const std::size_t chain = std::min(n, static_cast<std::size_t>(dice_.between(1, 2)));
-    for (std::size_t i = 0; i < n; ++i) {
-      if (kind < 2) c.A[i][i] = c.A[i][i] - Ratio(4 * o_.states, kind == 0 ? 1 : 2);
-      if (kind == 2) c.A[i][i] = c.A[i][i] + Ratio(2 * o_.states);
-      if (kind != 3 || i >= chain) continue;
-      c.A[i].assign(n, Ratio(0));  // poles at 0: integrators, one after the other
-      if (i > 0) c.A[i][i - 1] = 2;
-    }
-    c.B = matrix(n, m, 1), c.C = matrix(m, n, gain), c.D = matrix(m, m, direct * Ratio(1, 2));
-    for (std::size_t i = 0; i < m; ++i)
-      for (std::size_t j = 0; j <= i; ++j) c.D[i][j] = i == j ? direct : -c.D[j][i];
   }
 
   // --- six degrees of freedom per junction ---
