@@ -4,6 +4,9 @@
 #include <titop/analysis/simulation/hold.hpp>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/similarity_scaling.hpp>
+#include <unsupported/Eigen/MatrixFunctions>
+#include <vector>
 
 namespace titop {
 
@@ -15,70 +18,60 @@ namespace {
 template <class T>
 using DenseMatrix = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
 
-constexpr Index kMostInLongDouble = 128;  // states: some tenths of a second
-
-double power_of_two_near(double x) { return std::exp2(std::round(std::log2(x))); }
+constexpr Index kMostInLongDouble = 128;  ///< states: some tenths of a second
 
 /// Diagonal d, powers of two, such that the first n rows and columns of d^-1 X d have equal norms;
-/// the others (inputs) are scaled down to the size of the rows that they drive.
-Eigen::VectorXd similarity_scaling(MatrixXd X, Index n) {
+/// the others (inputs) are scaled to the size of the rows that they drive.
+Eigen::VectorXd scaling(const MatrixXd& X, Index n) {
   Eigen::VectorXd d = Eigen::VectorXd::Ones(X.rows());
-  const auto scale = [&](Index i, double f) {
-    X.col(i) *= f;
-    X.row(i) /= f;
-    d(i) *= f;
-  };
-  for (int sweep = 0; sweep < 20; ++sweep)
-    for (Index i = 0; i < n; ++i) {
-      const double c = X.col(i).head(n).cwiseAbs().sum() - std::abs(X(i, i));
-      const double r = X.row(i).head(n).cwiseAbs().sum() - std::abs(X(i, i));
-      if (c > 0 && r > 0) scale(i, power_of_two_near(std::sqrt(r / c)));
-    }
-  const double size = n > 0 ? X.topLeftCorner(n, n).cwiseAbs().colwise().sum().maxCoeff() : 0;
-  for (Index j = n; j < X.cols(); ++j)
-    if (const double c = X.col(j).cwiseAbs().sum(); c > 0 && size > 0)
-      scale(j, power_of_two_near(size / c));
+  MatrixXd own = X.topLeftCorner(n, n);
+  d.head(n) = linalg::similarity_scaling(own);
+  const double size = own.cwiseAbs().colwise().sum().maxCoeff();
+  for (Index j = n; j < X.cols(); ++j) {
+    const double c = X.col(j).head(n).cwiseAbs().cwiseQuotient(d.head(n)).sum();
+    if (c > 0 && size > 0) d(j) = std::exp2(std::round(std::log2(size / c)));
+  }
   return d;
 }
 
-/// exp(X) - I: Taylor at X / 2^k, then (I + E)^2 - I = 2 E + E^2, k times. Without the I a slow
-/// state keeps its digits if others are fast.
+/// [exp(A h), integral B] as one n x (n + nu) matrix: the exponential of [[A, B], [0, 0]] h.
 template <class T>
-DenseMatrix<T> exponential_less_one(DenseMatrix<T> X) {
-  const auto norm = static_cast<double>(X.cwiseAbs().colwise().sum().maxCoeff());
-  const int k = norm > 0.25 ? static_cast<int>(std::ceil(std::log2(norm / 0.25))) : 0;
-  X /= static_cast<T>(std::exp2(k));
-  DenseMatrix<T> E = X, term = X;
-  for (int i = 2; i <= 18; ++i) {
-    term = (term * X / T(i)).eval();
-    E += term;
-  }
-  for (int i = 0; i < k; ++i) E = (T(2) * E + E * E).eval();
-  return E;
+DenseMatrix<T> held_part(const MatrixXd& A, const MatrixXd& B, double h) {
+  const Index n = A.rows(), m = B.cols();
+  MatrixXd X = MatrixXd::Zero(n + m, n + m);
+  X.topRows(n) << A, B;
+  const Eigen::VectorXd d = scaling(X, n);
+  const MatrixXd scaled = d.cwiseInverse().asDiagonal() * X * d.asDiagonal();  // exact
+  const DenseMatrix<T> power = DenseMatrix<T>(scaled.cast<T>() * T(h)).exp();
+  return d.cast<T>().head(n).asDiagonal() * power.topRows(n) *
+         d.cwiseInverse().cast<T>().asDiagonal();
 }
 
-/// [exp(A h) - I, integral B] as one n x (n + nu) matrix: the exponential of [[A, B], [0, 0]] h.
-template <class T>
-DenseMatrix<T> increments(const MatrixXd& A, const MatrixXd& B, double h) {
+/// The same, of uncoupled parts one by one: fast ones cost the slow ones no digits.
+DenseMatrix<long double> held(const MatrixXd& A, const MatrixXd& B, double h) {
   const Index n = A.rows(), m = B.cols();
-  if (n == 0) return DenseMatrix<T>::Zero(0, m);
-  MatrixXd X = MatrixXd::Zero(n + m, n + m);
-  X << A, B, MatrixXd::Zero(m, n + m);
-  const Eigen::VectorXd d = similarity_scaling(X, n);
-  const MatrixXd scaled = d.cwiseInverse().asDiagonal() * X * d.asDiagonal();  // exact
-  const DenseMatrix<T> E = exponential_less_one<T>(scaled.cast<T>() * T(h));
-  return d.cast<T>().head(n).asDiagonal() * E.topRows(n) * d.cwiseInverse().cast<T>().asDiagonal();
+  DenseMatrix<long double> all = DenseMatrix<long double>::Zero(n, n + m);
+  for (const std::vector<int>& states : linalg::uncoupled_parts(A)) {
+    const Index size = std::ssize(states);
+    const MatrixXd own_A = A(states, states), own_B = B(states, Eigen::all);
+    const DenseMatrix<long double> own =
+        size <= kMostInLongDouble ? held_part<long double>(own_A, own_B, h)
+                                  : held_part<double>(own_A, own_B, h).cast<long double>();
+    all(states, states) = own.leftCols(size);
+    all.rightCols(m)(states, Eigen::all) = own.rightCols(m);
+  }
+  return all;
 }
 
 template <class T>
 MatrixXd run(const StateSpace& m, double h, const MatrixXd& inputs) {
   const Index n = m.A.rows();
-  const DenseMatrix<T> step = increments<T>(m.A, m.B, h), u = inputs.cast<T>();
+  const DenseMatrix<T> step = held(m.A, m.B, h).cast<T>(), u = inputs.cast<T>();
   const DenseMatrix<T> C = m.C.cast<T>(), D = m.D.cast<T>();
   DenseMatrix<T> x = DenseMatrix<T>::Zero(n, 1), y(m.C.rows(), inputs.cols());
   for (Index k = 0; k < inputs.cols(); ++k) {
     y.col(k) = C * x + D * u.col(k);
-    x += (step.leftCols(n) * x + step.rightCols(u.rows()) * u.col(k)).eval();
+    x = (step.leftCols(n) * x + step.rightCols(u.rows()) * u.col(k)).eval();
   }
   return y.template cast<double>();
 }
@@ -98,12 +91,8 @@ Hold hold(const MatrixXd& A, const MatrixXd& B, double h) {
     throw Error(Code::size,
                 fmt::format("hold: A is {} x {}, B {} x {}", n, A.cols(), B.rows(), B.cols()),
                 "A is square, and B has as many rows");
-  const MatrixXd all = n <= kMostInLongDouble
-                           ? MatrixXd(increments<long double>(A, B, h).cast<double>())
-                           : increments<double>(A, B, h);
-  Hold result{all.leftCols(n), all.rightCols(B.cols())};
-  result.A.diagonal().array() += 1;
-  return result;
+  const MatrixXd all = held(A, B, h).cast<double>();
+  return {all.leftCols(n), all.rightCols(B.cols())};
 }
 
 MatrixXd held_response(const StateSpace& model, double h, const MatrixXd& inputs) {

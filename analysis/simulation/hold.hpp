@@ -12,10 +12,12 @@ struct Hold {
   Eigen::MatrixXd B;  ///< n x nu
 };
 
-/// Scaling and squaring of exp(A h) - I on the scaled matrix, in long double up to 128 states and
-/// in double beyond; rounded once. Entries are off by some 2^k ulp of that precision at 1, 2^k
-/// about the largest |pole| h. Throws bad_value unless h is positive and finite, size unless A is n
-/// x n and B n x nu. O((n + nu)^3 log(|A| h)).
+/// By Eigen's exponential of the scaled matrix, each part of A that is coupled with no other by
+/// itself: in long double up to 128 states, in double beyond, and rounded once. Entries are off by
+/// some 2^k ulp of that precision at 1, 2^k about the largest |pole| h of their part; by up to 4^k
+/// if stiff springs connect masses that move slowly together. Throws bad_value unless h is positive
+/// and finite, size unless A is n x n and B n x nu. O((n + nu)^3 log(|A| h)) for a part of n
+/// states.
 Hold hold(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, double h);
 
 /// Outputs at t = 0, h, 2 h, ... from x(0) = 0 for inputs held over each step (columns of `inputs`,

@@ -270,30 +270,9 @@ ModelForm modal_form(const StateSpace& model) {
   return form;
 }
 
-std::vector<Index> diagonal_blocks(const MatrixXd& A) {
-  std::vector<Index> first;
-  for (Index i = 0; i < A.rows();
-       i += 1 + (i + 1 < A.rows() && (A(i, i + 1) != 0 || A(i + 1, i) != 0)))
-    first.push_back(i);
-  first.push_back(A.rows());
-  return first;
-}
-
 void add_hold(ModelForm& form, double h) {
-  if (!form.modal) {
-    Hold all = hold(form.A, form.B, h);
-    form.A_h = std::move(all.A), form.B_h = std::move(all.B);
-    return;
-  }
-  form.A_h = MatrixXd::Zero(form.A.rows(), form.A.rows());
-  form.B_h.resize(form.B.rows(), form.B.cols());
-  const std::vector<Index> blocks = diagonal_blocks(form.A);
-  for (std::size_t k = 0; k + 1 < blocks.size(); ++k) {
-    const Index i = blocks[k], size = blocks[k + 1] - i;
-    const Hold block = hold(form.A.block(i, i, size, size), form.B.middleRows(i, size), h);
-    form.A_h.block(i, i, size, size) = block.A;
-    form.B_h.middleRows(i, size) = block.B;
-  }
+  Hold all = hold(form.A, form.B, h);
+  form.A_h = std::move(all.A), form.B_h = std::move(all.B);
 }
 
 }  // namespace titop::emit

@@ -75,10 +75,7 @@ ModelForm own_form(const StateSpace& model);
 /// whether it may be used: it is large if A is defective (free rigid motion and modes).
 ModelForm modal_form(const StateSpace& model);
 
-/// Adds A_h, B_h; block by block if the form is modal.
+/// Adds A_h, B_h.
 void add_hold(ModelForm& form, double sample_time);
-
-/// Ends of the blocks on the diagonal of a block-diagonal A: first rows, and n at the end.
-std::vector<Eigen::Index> diagonal_blocks(const Eigen::MatrixXd& A);
 
 }  // namespace titop::emit

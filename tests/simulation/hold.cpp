@@ -97,6 +97,56 @@ TEST_CASE("hold of any matrix against 50 digits") {
   }
 }
 
+TEST_CASE("hold of slow states beside fast ones keeps the digits of both") {
+  const double fast = 1e6, slow = 1e-9;
+  // Uncoupled: a decay, an oscillator of 1e6 rad/s, a free mass.
+  MatrixXd A = MatrixXd::Zero(5, 5);
+  A(0, 0) = -slow;
+  A(1, 3) = 1, A(3, 1) = -fast * fast;
+  A(2, 4) = 1;
+  MatrixXd B = MatrixXd::Zero(5, 1);
+  B << 1, 0, 0, 1, 1;
+  const Hold x = hold(A, B, 1);
+  CHECK(std::abs(x.B(0, 0) * slow / -std::expm1(-slow) - 1) <= 1e-15);
+  CHECK(x.A(2, 4) == 1);
+  CHECK(x.B(2, 0) == 0.5);
+  CHECK(std::abs(x.A(1, 1) - std::cos(fast)) <= 1e-12);
+  // A soft spring of two masses that a stiff one connects: x1 + x2 moves as cos(t), x1 - x2 at
+  // sqrt(1 + 2e12) rad/s, of which the square costs 2e12 ulp of long double.
+  MatrixXd K(2, 2);
+  K << 1 + 1e12, -1e12, -1e12, 1 + 1e12;
+  MatrixXd two = MatrixXd::Zero(4, 4);
+  two.topRightCorner(2, 2).setIdentity();
+  two.bottomLeftCorner(2, 2) = -K;
+  const MatrixXd both = hold(two, Eigen::Vector4d(0, 0, 1, 1), 1).A;
+  CHECK(std::abs(both(0, 0) + both(0, 1) - std::cos(1.0)) <= 3e-7);
+}
+
+TEST_CASE("hold of a row of 70 masses, in double, against its modes") {
+  const Index n = 70;
+  MatrixXd K = MatrixXd::Zero(n, n);
+  for (Index i = 0; i < n; ++i) {
+    K(i, i) = 2;
+    if (i > 0) K(i, i - 1) = K(i - 1, i) = -1;
+  }
+  MatrixXd A = MatrixXd::Zero(2 * n, 2 * n), B = MatrixXd::Zero(2 * n, 1);
+  A.topRightCorner(n, n).setIdentity();
+  A.bottomLeftCorner(n, n) = -K;
+  B(n) = 1;
+  const Hold x = hold(A, B, 3);  // 140 states, coupled: in double
+  // Modes of the row: frequencies 2 sin(j p / 2), shapes sin(i j p), p = pi / (n + 1).
+  const double p = std::acos(-1.0) / static_cast<double>(n + 1);
+  double position = 0, rate = 0;
+  for (Index j = 1; j <= n; ++j) {
+    const double shape = std::sin(static_cast<double>(j) * p),
+                 w = 2 * std::sin(static_cast<double>(j) * p / 2), half = std::sin(1.5 * w);
+    position += 2 / static_cast<double>(n + 1) * shape * shape * 2 * half * half / (w * w);
+    rate += 2 / static_cast<double>(n + 1) * shape * shape * std::sin(3 * w) / w;
+  }
+  CHECK(std::abs(x.B(0, 0) - position) <= 1e-13);
+  CHECK(std::abs(x.B(n, 0) - rate) <= 1e-13);
+}
+
 TEST_CASE("hold of nothing: no states, no inputs, neither") {
   for (const Index n : {0, 2})
     for (const Index m : {0, 3}) {
