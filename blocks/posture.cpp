@@ -101,17 +101,18 @@ VectorXd damped_step(const End& end, double lambda) {
 VectorXd close_from(const KinematicLoop& loop, VectorXd q) {
   if (loop.unknown.empty()) return q;
   End end = end_of(loop, q);
-  double lambda = 1e-3;
-  for (int i = 0; i < 200 && end.cost() > 0 && lambda < 1e12; ++i) {
+  constexpr double kFirst = 1e-3, kSmallest = 1e-12, kNone = 1e-16, kLargest = 1e12;
+  double lambda = kFirst;
+  for (int i = 0; i < 200 && end.cost() > 0 && lambda < kLargest; ++i) {
     const VectorXd dq = damped_step(end, lambda);
     VectorXd next = q;
     for (Index c = 0; c < dq.size(); ++c) next(loop.unknown[at(c)]) += dq(c);
     const End there = end_of(loop, next);
     if (there.cost() < end.cost()) {
       q = next, end = there;
-      lambda = lambda < 1e-16 ? 0 : lambda / 10;
+      lambda = lambda < kNone ? 0 : lambda / 10;
     } else {
-      lambda = std::max(10 * lambda, 1e-12);
+      lambda = std::max(10 * lambda, kSmallest);
     }
   }
   return q;

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <titop/analysis/damping/assembled_part.hpp>
 #include <titop/graph/linalg/graded.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 /// Damping that a body's assembled modes have exactly.
 namespace titop {
@@ -11,11 +12,11 @@ using Eigen::VectorXd;
 
 /// D_P^-1 B, without the directions that have no mass (and in which no mode has any).
 MatrixXd solve_rigid(const Matrix6& D_P, const MatrixXd& B) {
-  constexpr double massless = 1e-12;
   const Vector6 scale =
       D_P.diagonal().unaryExpr([](double m) { return m > 0 ? 1 / std::sqrt(m) : 1.0; });
   const SymmetricModes m = eigh(scale.asDiagonal() * D_P * scale.asDiagonal());
-  const VectorXd inverse = m.lambda.unaryExpr([](double l) { return l > massless ? 1 / l : 0.0; });
+  const VectorXd inverse =
+      m.lambda.unaryExpr([](double l) { return l > linalg::kAxisRounding ? 1 / l : 0.0; });
   const MatrixXd V = scale.asDiagonal() * m.V;
   return V * (inverse.asDiagonal() * (V.transpose() * B));
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <titop/analysis/simulation/simulate.hpp>
+#include <titop/analysis/simulation/whole_steps.hpp>
 
 namespace titop {
 
@@ -36,7 +37,7 @@ Excitation Excitation::held(MatrixXd samples, double period) {
                 "give a positive period");
   return Excitation([samples = std::move(samples), period](double begin, double end) {
     // From inside the step: a step that crosses a sample is refused.
-    const double from = begin / period, to = end / period, slack = 1e-9 + kRounding * to;
+    const double from = begin / period, to = end / period, slack = detail::kOfStep + kRounding * to;
     const auto first = static_cast<Index>(std::floor(from + slack));
     if (to - static_cast<double>(first) > 1 + slack)
       throw Error(
@@ -107,7 +108,7 @@ Excitation Excitation::recorded(std::vector<double> times, MatrixXd samples) {
                   "give finite times that ascend");
   return Excitation(
       [times = std::move(times), samples = std::move(samples)](double begin, double end) {
-        const double slack = 1e-9 * (end - begin) + kRounding * std::abs(end);
+        const double slack = detail::kOfStep * (end - begin) + kRounding * std::abs(end);
         refuse_jumps(times, begin, end, slack);
         return Ends{at_time(times, samples, begin, slack, true),
                     at_time(times, samples, end, slack, false)};

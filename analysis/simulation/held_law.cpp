@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <titop/analysis/simulation/held_law.hpp>
+#include <titop/analysis/simulation/whole_steps.hpp>
 #include <titop/graph/linalg/index.hpp>
 
 namespace titop::detail {
@@ -29,14 +30,13 @@ std::vector<int> places_of(const std::vector<std::string>& of_law,
 
 /// Steps of a period.
 Index steps_of_period(double period, double step) {
-  constexpr double kMost = 1e9;
-  const double steps = period / step, whole = std::round(steps);
-  if (!(whole >= 1 && whole <= kMost) || std::abs(steps - whole) > 1e-9 * whole)
+  const double steps = whole_steps(period, step).value_or(0);
+  if (!(steps >= 1 && steps <= kMostSteps))
     throw Error(
         Code::bad_value,
         fmt::format("the sampled law has a period of {} s, and the step is {} s", period, step),
         fmt::format("take Simulation::step = {} over a whole number", period));
-  return static_cast<Index>(whole);
+  return static_cast<Index>(steps);
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ class Rk4 : public detail::StepRule {
 
 /// |1 + z + z^2/2 + z^3/6 + z^4/24| beyond 1.
 bool grows(std::complex<double> z) {
-  return std::abs(1.0 + z * (1.0 + z / 2.0 * (1.0 + z / 3.0 * (1.0 + z / 4.0)))) > 1 + 1e-12;
+  return std::abs(1.0 + z * (1.0 + z / 2.0 * (1.0 + z / 3.0 * (1.0 + z / 4.0)))) > 1;
 }
 
 /// The largest |z| along the ray of a stable pole, where growth begins.
@@ -53,10 +53,9 @@ double rk4_limit(const System& system) {
   double limit = std::numeric_limits<double>::infinity();
   if (m.A.size() == 0) return limit;
   const Eigen::VectorXcd poles = linalg::eigenvalues(m.A);
-  const double largest = poles.cwiseAbs().maxCoeff();
   for (std::complex<double> p : poles) {
     const double size = std::abs(p);
-    if (!(size > 1e-12 * largest) || p.real() > linalg::kPoleOnAxis * size) continue;
+    if (!(size > 0) || p.real() > linalg::kPoleOnAxis * size) continue;
     // On the axis up to rounding: along it the region reaches sqrt(8).
     if (std::abs(p.real()) <= linalg::kPoleOnAxis * size) p = {0, size};
     limit = std::min(limit, reach(p / size) / size);

@@ -7,6 +7,7 @@
 #include <titop/analysis/simulation/held_law.hpp>
 #include <titop/analysis/simulation/simulate.hpp>
 #include <titop/analysis/simulation/steppers.hpp>
+#include <titop/analysis/simulation/whole_steps.hpp>
 #include <titop/compiler/solve/evaluate.hpp>
 #include <titop/compiler/solve/factored.hpp>
 #include <titop/compiler/solve/instant.hpp>
@@ -40,11 +41,10 @@ Index steps_of(const Simulation& s) {
   };
   if (!(s.step > 0) || !std::isfinite(s.step) || !(s.until >= 0) || !std::isfinite(s.until))
     return refuse("give a positive step, and an end that is not negative");
-  const double steps = s.until / s.step, whole = std::round(steps);
-  if (std::abs(steps - whole) > 1e-9 * std::max(1.0, whole))
-    return refuse("take an end that is a whole number of steps");
-  if (whole > 1e9) return refuse("that is more than 1e9 steps");
-  return static_cast<Index>(whole);
+  const std::optional<double> steps = detail::whole_steps(s.until, s.step);
+  if (!steps) return refuse("take an end that is a whole number of steps");
+  if (*steps > detail::kMostSteps) return refuse("that is more than 1e9 steps");
+  return static_cast<Index>(*steps);
 }
 
 VectorXd start_of(const System& system, const VectorXd& x0) {

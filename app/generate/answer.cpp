@@ -13,6 +13,9 @@ using Complex = std::complex<double>;
 
 constexpr std::uint64_t kNextSeed = 1000003;
 
+/// A smaller pole is 0: of six at 0 the rounding of 100 digits leaves its sixth root.
+constexpr double kAtRest = 1e-15;
+
 /// Eigenvalues with Im s >= 0, slow ones first; 0 if at the rounding level of 100 digits.
 std::vector<Complex> poles(const Table<Digits>& A) {
   const auto n = static_cast<Eigen::Index>(A.rows());
@@ -28,7 +31,7 @@ std::vector<Complex> poles(const Table<Digits>& A) {
   std::vector<Complex> list;
   const auto rounded = [](const Digits& x) {
     const double value = static_cast<double>(x);
-    return std::abs(value) > 1e-15 ? value : 0;
+    return std::abs(value) > kAtRest ? value : 0;
   };
   for (Eigen::Index i = 0; i < n;) {
     if (i + 1 == n || T(i + 1, i) == 0) {

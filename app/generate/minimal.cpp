@@ -3,6 +3,9 @@
 namespace titop::generate {
 namespace {
 
+/// Of its largest entry: a column with a smaller remainder depends on the others.
+constexpr double kDependent = 1e-40;
+
 /// Columns that span B, A B, A^2 B ..., each made of A times one before it, pivots set apart.
 template <class S>
 struct Krylov {
@@ -34,7 +37,7 @@ struct Krylov {
     double best = 0;
     for (std::size_t i = 0; i < v.size(); ++i)
       if (magnitude(v[i]) > best) best = magnitude(v[i]), pivot = i;
-    if (best <= 1e-40 * size) return;
+    if (best <= kDependent * size) return;
     const S inverse = S(1) / v[pivot];
     for (S& x : v) x = x * inverse;
     vectors.push_back(std::move(v));

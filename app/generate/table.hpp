@@ -48,10 +48,12 @@ class Mod {
   std::uint64_t value_ = 0;
 };
 
-/// Size of a pivot; 0 at the rounding level of 100 digits.
+/// Half of 100 digits.
+inline constexpr double kRounding = 1e-50;
+/// Size of a pivot; 0 at the rounding level.
 inline double magnitude(const Digits& x) {
   const double size = std::abs(static_cast<double>(x));
-  return size > 1e-50 ? size : 0;
+  return size > kRounding ? size : 0;
 }
 inline double magnitude(Mod x) { return x.is_zero() ? 0 : 1; }
 

@@ -205,25 +205,25 @@ EffectiveMass effective_mass(const ModalData& data) {
 }
 
 std::vector<std::string> implausible(const ModalData& data) {
-  constexpr double most_damped = 0.2, slowest = 1e-4, fastest = 1e6;
+  constexpr double kMostPlausible = 0.2, kSlowest = 1e-4, kFastest = 1e6;
   std::vector<std::string> lines;
   Index mode = 0;
-  if (data.xi.size() > 0 && data.xi.maxCoeff(&mode) > most_damped)
+  if (data.xi.size() > 0 && data.xi.maxCoeff(&mode) > kMostPlausible)
     lines.push_back(fmt::format("damping ratio {:.3g} of mode {}, above {}: percent?",
-                                data.xi(mode), mode + 1, most_damped));
+                                data.xi(mode), mode + 1, kMostPlausible));
   if (data.omega.size() == 0) return lines;
   const double lowest = data.omega.minCoeff() / (2 * std::numbers::pi);
-  if (lowest < slowest || lowest > fastest)
+  if (lowest < kSlowest || lowest > kFastest)
     lines.push_back(fmt::format("lowest frequency {:.3g} Hz, {} {:g} Hz: units?", lowest,
-                                lowest < slowest ? "below" : "above",
-                                lowest < slowest ? slowest : fastest));
+                                lowest < kSlowest ? "below" : "above",
+                                lowest < kSlowest ? kSlowest : kFastest));
   return lines;
 }
 
 std::vector<std::string> implausible_modulus(double E) {
-  constexpr double least = 1e8;
-  if (E >= least) return {};
-  return {fmt::format("Young's modulus {:.3g} Pa, below {:g} Pa: in MPa?", E, least)};
+  constexpr double kSoftest = 1e8;
+  if (E >= kSoftest) return {};
+  return {fmt::format("Young's modulus {:.3g} Pa, below {:g} Pa: in MPa?", E, kSoftest)};
 }
 
 ModalReport modal_report(const ModalData& data) {

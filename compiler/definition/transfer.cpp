@@ -7,6 +7,7 @@
 #include <titop/graph/drives.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop {
 namespace {
@@ -169,7 +170,7 @@ MatrixXcd transfer(const Graph& graph, std::complex<double> s, ParameterValues v
         fmt::format("{}: {} equations for {} unknowns", graph.name, a.row - a.outputs, a.unknowns),
         "compile it: the message names the port that is not driven, or driven twice");
   const linalg::Solution solution = linalg::solve(a.E.topRows(a.unknowns), a.F.topRows(a.unknowns));
-  if (!(solution.rcond > 1e-16) || !solution.z.allFinite())
+  if (!(solution.rcond > linalg::kEpsilon / 2) || !solution.z.allFinite())
     throw Error(
         Code::singular,
         fmt::format("{}: at s = {}{:+}j the equations have no unique solution (rcond {:.1g})",

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <titop/compiler/diagram/picture.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::diagram {
 namespace {
@@ -42,7 +43,7 @@ double rotation_scale(const MatrixXd& m) {
   const MatrixXd square = m * m.transpose() - k * k * MatrixXd::Identity(n, n);
   const bool split = n == 3 || (m.topRightCorner(3, 3).isZero(0) &&
                                 (m.topLeftCorner(3, 3) - m.bottomRightCorner(3, 3)).isZero(0));
-  return k > 0 && split && square.cwiseAbs().maxCoeff() <= 1e-9 * k * k ? k : 0;
+  return k > 0 && split && square.cwiseAbs().maxCoeff() <= linalg::kMatrixDigits * k * k ? k : 0;
 }
 
 /// ".linear" for [1 0], ".angular" for [0 1]; empty for anything else.
@@ -74,7 +75,7 @@ void put_matrix(TermText& r, const Matrix& matrix, const std::string& to, const 
     r.rotation = true;
     const Eigen::Matrix3d T = m.topLeftCorner(3, 3);
     const double sign = T.col(0).cross(T.col(1)).dot(T.col(2)) < 0 ? -1 : 1;
-    put_gain(r, sign * (std::abs(k - 1) < 1e-9 ? 1 : k));
+    put_gain(r, sign * (std::abs(k - 1) < linalg::kMatrixDigits ? 1 : k));
   } else if (const std::string part = selection(m); !part.empty()) {
     r.part = part;
   } else {

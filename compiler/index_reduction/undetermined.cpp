@@ -194,11 +194,11 @@ void take_out(KeptMatrix& z, Index column, const MovingPart& p, const Motions& m
 
 std::string axis(RowVectorXd v) {
   for (Index i = 0; i < v.size(); ++i)
-    if (std::abs(v(i)) < 1e-9) v(i) = 0;  // and no -0
+    if (std::abs(v(i)) < linalg::kMatrixDigits) v(i) = 0;  // and no -0
   Index first = 0;
   while (v(first) == 0) ++first;
   if (v(first) < 0) v = (-v).array() + 0.0;
-  if (v(first) > 1 - 1e-9) return std::string(1, "xyz"[first]);
+  if (v(first) > 1 - linalg::kMatrixDigits) return std::string(1, "xyz"[first]);
   return fmt::format("({:.3g}, {:.3g}, {:.3g})", v(0), v(1), v(2));
 }
 

@@ -11,6 +11,7 @@
 #include <titop/emit/text/literals.hpp>
 #include <titop/emit/text/write_file.hpp>
 #include <titop/graph/error.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop {
 
@@ -38,8 +39,11 @@ void check(const CppOptions& options) {
 
 /// Accurate enough compared with the model's own states: no more than a digit lost.
 bool serves(const ModelForm& modes, const ModelForm& own) {
-  return modes.error <= std::max(1e-12, 10 * own.error) &&
-         modes.step_error <= std::max(1e-12, 10 * own.step_error);
+  constexpr double kEnough = 1e-12;  // as of a transfer
+  const auto alike = [&](double error, double before) {
+    return error <= std::max(kEnough, before / linalg::kOneDigit);
+  };
+  return alike(modes.error, own.error) && alike(modes.step_error, own.step_error);
 }
 
 ModelForm choose(ModelForm own, ModelForm modes, const CppOptions& options) {

@@ -8,6 +8,7 @@
 #include <titop/emit/cpp/form.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::emit {
 
@@ -33,11 +34,12 @@ double difference_at(const ModelForm& form, std::complex<double> s, const Matrix
   return solution.rcond > 0 ? difference(form, solution.z, exact, points).worst : HUGE_VAL;
 }
 
-/// Zero rows, and rows in which `off` is at least a thousandth of `exact`.
+/// Zero rows, and rows of fewer than three digits: `off` is a thousandth of `exact` or more.
 std::vector<Index> noisy_rows(const MatrixXd& exact, const MatrixXd& off) {
+  constexpr double kThreeDigits = 1e-3;
   std::vector<Index> rows;
   for (Index i = 0; i < exact.rows(); ++i)
-    if (off.row(i).maxCoeff() >= 1e-3 * exact.row(i).maxCoeff()) rows.push_back(i);
+    if (off.row(i).maxCoeff() >= kThreeDigits * exact.row(i).maxCoeff()) rows.push_back(i);
   return rows;
 }
 
@@ -74,6 +76,7 @@ std::optional<BlockDiagonalForm> oscillators(const StateSpace& model) {
 }
 
 using Long = std::complex<long double>;
+constexpr long double kLongEpsilon = std::numeric_limits<long double>::epsilon();
 using MatrixXcl = Eigen::Matrix<Long, Eigen::Dynamic, Eigen::Dynamic>;
 
 /// SharpEigenvectors V of A, W = V^-1, and W A V on its diagonal.
@@ -115,7 +118,7 @@ BlockDiagonalForm general_modes(const MatrixXd& A) {
   Index at = 0;
   for (Index k = 0; k < n && at < n; ++k) {
     const Long pole = e.values(k);
-    const bool real = std::abs(pole.imag()) <= 1e-17L * std::abs(pole);
+    const bool real = std::abs(pole.imag()) <= 100 * kLongEpsilon * std::abs(pole);
     if (!real && pole.imag() < 0) continue;
     modes.A(at, at) = pole.real();
     modes.to_states.col(at) = e.V.col(k).real();
@@ -160,7 +163,7 @@ void find_silent(const System& system, Points& points) {
 
 TransferDifference difference(const ModelForm& form, const MatrixXcd& X, const MatrixXcd& exact,
                               const Points& points) {
-  constexpr double kTermRounding = 10 * std::numeric_limits<double>::epsilon();
+  constexpr double kTermRounding = 10 * linalg::kEpsilon;
   const MatrixXcd G = form.C * X + form.D;
   const MatrixXd terms = form.C.cwiseAbs() * X.cwiseAbs() + form.D.cwiseAbs();
   TransferDifference d;
@@ -170,7 +173,7 @@ TransferDifference difference(const ModelForm& form, const MatrixXcd& X, const M
       const double off = std::abs(G(i, j) - exact(i, j));
       const double size = std::max(std::sqrt(exact.row(i).cwiseAbs().maxCoeff()) *
                                        std::sqrt(exact.col(j).cwiseAbs().maxCoeff()),
-                                   1e-6 * terms(i, j));
+                                   kOfCancelled * terms(i, j));
       if (!(off <= 0)) d.worst = std::max(d.worst, std::isfinite(off) ? off / size : HUGE_VAL);
       if (size > 0) d.rounding = std::max(d.rounding, kTermRounding * terms(i, j) / size);
     }

@@ -23,6 +23,8 @@ struct ModelForm {
 /// Largest accepted error of a model, or of a check of it: tolerances are 1e-6 at most,
 /// and another machine may round a little worse.
 constexpr double kProvable = certification::kDenseHolds;
+/// Of the terms that cancel in an entry of a transfer: a smaller difference is none.
+constexpr double kOfCancelled = 1e-6;
 inline bool is_provable(double error) { return error <= kProvable; }
 
 /// Points of comparison, and the factored system's transfers there.
@@ -40,7 +42,7 @@ Points response_points(const System& system, const std::vector<Pole>& poles);
 
 /// C X + D against the exact transfer at one point, without the silent rows and columns. Each entry
 /// is relative to the geometric mean of the largest entries of its row and column, or, if larger
-/// (zero by symmetry), to 1e-6 of the terms that cancel in it, |C| |X| + |D|.
+/// (zero by symmetry), to kOfCancelled of the terms that cancel in it, |C| |X| + |D|.
 struct TransferDifference {
   double worst = 0;
   double rounding = 0;  ///< possible difference by rounding of the terms on another machine

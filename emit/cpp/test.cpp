@@ -19,9 +19,15 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Ten times the measured error, but never so wide that a wrong sixth digit passes.
+/// Least tolerances, for rounding on another machine: of a transfer or a trajectory, of a pole, of
+/// a series of up to 1e9 multiplications.
+constexpr double kLeast = 1e-11, kLeastOfPole = 1e-9, kLeastOfSeries = 1e-8;
+/// Largest tolerance: a wrong sixth digit must fail.
+constexpr double kTooWide = 1e-6;
+
+/// Ten times the measured error, within these limits.
 std::string tolerance(double least, double measured) {
-  return fmt::format("{:.1e}", std::clamp(10 * measured, least, 1e-6));
+  return fmt::format("{:.1e}", std::clamp(10 * measured, least, kTooWide));
 }
 
 /// The comment that replaces a check for which double is not accurate enough.
@@ -86,7 +92,7 @@ std::vector<std::size_t> compared(const Points& points) {
 }
 
 std::string transfer_test(const Naming& names, const ModelForm& form, const Points& points) {
-  TransferDifference worst{form.error, 1e-11};
+  TransferDifference worst{form.error, kLeast};
   std::string checks;
   for (const std::size_t k : compared(points)) {
     const TransferDifference here = tested_difference(form, points.s[k], points.exact[k], points);
@@ -115,7 +121,7 @@ std::string static_gain_test(const Naming& names, const ModelForm& form, const E
                               {"VALUES", values(exact)},
                               {"SILENT_OUTPUTS", indices(rest.silent_outputs)},
                               {"SILENT_INPUTS", indices(rest.silent_inputs)},
-                              {"TOLERANCE", tolerance(std::max(1e-11, here.rounding), worst)}});
+                              {"TOLERANCE", tolerance(std::max(kLeast, here.rounding), worst)}});
 }
 
 /// Poles other than 0, so many of them that the test takes seconds.
@@ -133,7 +139,8 @@ std::vector<std::size_t> poles_to_find(const std::vector<Pole>& poles, Index n) 
 
 /// Distance of the eigenvalue of A that the test's search (kPoles) finds next to p, relative.
 double pole_error(const MatrixXd& A, Complex p) {
-  const Complex shift = p + 1e-10 * std::abs(p) * Complex(0.6, 0.8);
+  constexpr double kBeside = 1e-10;
+  const Complex shift = p + kBeside * std::abs(p) * Complex(0.6, 0.8);
   const TestedResolvent resolvent(A, shift);
   Eigen::VectorXcd x(A.rows());
   for (Index i = 0; i < x.size(); ++i) x(i) = 1 + 0.1 * static_cast<double>(i * i % 7);
@@ -161,7 +168,7 @@ std::string pole_test(const Naming& names, const ModelForm& form, const std::vec
   std::string text = filled(kPoles, {{"NAME", names.name},
                                      {"POLES", list(items, 4)},
                                      {"WHICH", list(which, 6)},
-                                     {"TOLERANCE", tolerance(1e-9, worst)}});
+                                     {"TOLERANCE", tolerance(kLeastOfPole, worst)}});
   if (!lost.empty())
     text += fmt::format(
         "// Only counted, as the eigenvalues of A beside them are off by more than {}: poles\n// "
@@ -179,7 +186,7 @@ std::string trajectory_test(const Naming& names, const ModelForm& form, const Ma
                               {"NY", std::to_string(names.outputs.size())},
                               {"VALUES", all + "}"},
                               {"STEPS", std::to_string(outputs.cols())},
-                              {"TOLERANCE", tolerance(1e-11, form.step_error)}});
+                              {"TOLERANCE", tolerance(kLeast, form.step_error)}});
 }
 
 /// Difference of the test's Taylor series (kTaylor) from `step`.
@@ -224,7 +231,7 @@ std::string taylor_test(const Naming& names, const ModelForm& form, const Expect
                           {"NY", std::to_string(names.outputs.size())},
                           {"STEPS", std::to_string(expected.inputs.cols())},
                           {"SUBSTEPS", fmt::format("{:.0f}", parts)},
-                          {"TOLERANCE", tolerance(1e-8, error)}});
+                          {"TOLERANCE", tolerance(kLeastOfSeries, error)}});
 }
 
 }  // namespace

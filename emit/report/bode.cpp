@@ -6,6 +6,7 @@
 #include <titop/emit/report/figures.hpp>
 #include <titop/emit/report/plot.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::report {
 namespace {
@@ -57,7 +58,7 @@ Plot bode_plot(const Subject& s, const Sweep& w, const std::vector<IoPair>& pair
 std::string bode_plots(const Subject& s, const Sweep& w, const std::vector<IoPair>& pairs) {
   std::string text = "<h3>Bode plots</h3>\n";
   const bool on_axis = std::any_of(s.poles.begin(), s.poles.end(), [](const Pole& p) {
-    return p.pair && std::abs(p.damping) < 1e-6;
+    return p.pair && std::abs(p.damping) < linalg::kPoleOnAxis;
   });
   text += s.options.pairs.empty() ? "<p>Of every pair of vectors the entry with the highest peak."
                                   : "<p>The requested pairs.";

@@ -226,7 +226,7 @@ PoleCounts pole_counts(const std::vector<Pole>& poles) {
       found.near += n;
     else if (p.s.real() > linalg::kPoleOnAxis * p.omega)
       found.right += n;
-    else if (p.s.real() >= -1e-12 * p.omega)
+    else if (p.s.real() >= -linalg::kPoleOnAxis * p.omega)
       found.axis += n;
   }
   return found;

@@ -133,7 +133,8 @@ void add_names(Plot& plot, const DrawnMode& d, const Eigen::Matrix<double, 2, 3>
 
 /// Ranges of both axes in one scale, with a margin; and the frame's height.
 void set_ranges(Plot& plot) {
-  constexpr double kMargin = 0.08, kLeastHeight = 140, kMostHeight = 380;
+  constexpr double kMargin = 0.08;
+  constexpr double kLeastHeight = 140, kMostHeight = 380;  // [px]
   const auto range = [](const std::vector<std::vector<double>>& lists) {
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (const auto& list : lists)

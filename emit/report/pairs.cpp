@@ -47,6 +47,7 @@ int find(const std::vector<ScalarSignal>& list, const std::string& name, const c
 std::vector<IoPair> strongest(const Subject& s, const Sweep& sweep,
                               const std::vector<UnitGroup>& outputs,
                               const std::vector<UnitGroup>& inputs) {
+  constexpr double kNothing = 1e-12;  // of the row's and column's peaks: rounding of a transfer
   const MatrixXd peak = peaks(s, sweep);
   std::vector<IoPair> list;
   for (std::size_t a = 0; a < inputs.size(); ++a)
@@ -58,7 +59,7 @@ std::vector<IoPair> strongest(const Subject& s, const Sweep& sweep,
           if (peak(i, j) > peak(best.output, best.input)) best.output = i, best.input = j;
       const double usual =
           std::sqrt(peak.row(best.output).maxCoeff()) * std::sqrt(peak.col(best.input).maxCoeff());
-      if (peak(best.output, best.input) > 1e-12 * usual) list.push_back(best);
+      if (peak(best.output, best.input) > kNothing * usual) list.push_back(best);
     }
   return list;
 }

@@ -10,8 +10,12 @@
 namespace titop::report {
 namespace {
 
-constexpr double kWidth = 520, kLeft = 66, kRight = 14, kTop = 8, kGap = 12, kBottom = 40;
-constexpr double kInner = kWidth - kLeft - kRight;
+constexpr double kWidth = 520, kLeft = 66, kRight = 14, kTop = 8, kGap = 12, kBottom = 40,
+                 kInner = kWidth - kLeft - kRight;  // [px]
+/// Relative: a smaller difference of values does not show in a curve.
+constexpr double kLastDigits = 1e-12;
+/// Of a step between ticks, or of a decade: rounding of a limit that is a tick.
+constexpr double kOnTick = 1e-9;
 static_assert(kInner == kPlotWidth);
 
 struct Tick {
@@ -50,7 +54,7 @@ class Scale {
   void linear_range() {
     if (!std::isfinite(low_) || !std::isfinite(high_)) low_ = 0, high_ = 1;  // nothing to show
     // A curve that varies only in its last digits is a constant.
-    if (!(high_ - low_ > 1e-12 * std::max(std::abs(low_), std::abs(high_)))) {
+    if (!(high_ - low_ > kLastDigits * std::max(std::abs(low_), std::abs(high_)))) {
       const double pad = low_ == 0 ? 1 : 0.5 * std::abs(low_);
       low_ -= pad, high_ += pad;
     }
@@ -60,7 +64,7 @@ class Scale {
     const double unit = std::pow(10.0, exponent_);
     const Ticks t = linear_ticks(low_ / unit, high_ / unit, axis_.degrees);
     for (const double v : t.at) {
-      const double clean = std::abs(v) < 1e-9 * t.step ? 0 : v;
+      const double clean = std::abs(v) < kOnTick * t.step ? 0 : v;
       ticks_.push_back({clean * unit, fmt::format("{:.6g}", clean)});
     }
   }
@@ -72,14 +76,14 @@ class Scale {
       const double middle = (low_ + high_) / 2;
       low_ = middle - 0.25, high_ = middle + 0.25;
     }
-    const int first = static_cast<int>(std::ceil(low_ - 1e-9)),
-              last = static_cast<int>(std::floor(high_ + 1e-9));
+    const int first = static_cast<int>(std::ceil(low_ - kOnTick)),
+              last = static_cast<int>(std::floor(high_ + kOnTick));
     const bool plain = low_ >= -3.01 && high_ <= 5.01, few = high_ - low_ < 2;
     const int stride = std::max(1, (last - first + 6) / 7);
     for (int decade = first - 1; decade <= last; ++decade)
       for (int k = 1; k < 10; ++k) {
         const double v = k * std::pow(10.0, decade), at = std::log10(v);
-        if (at < low_ - 1e-9 || at > high_ + 1e-9) continue;
+        if (at < low_ - kOnTick || at > high_ + kOnTick) continue;
         const bool named = k == 1 ? (decade - first) % stride == 0 : few && (k == 2 || k == 5);
         if (named)
           ticks_.push_back({v, plain || k > 1 ? fmt::format("{:.6g}", v) : power_of_ten(decade)});
@@ -106,7 +110,7 @@ Scale scale_of(const PlotAxis& axis, const std::vector<std::vector<double>>& dat
         low = std::min(low, v), high = std::max(high, v);
   if (!(low <= high)) return {axis, axis.log ? 0.1 : 0, 1};
   if (axis.log) {
-    low = std::max(low, high * 1e-12);
+    low = std::max(low, high * kLastDigits);
     const double pad = std::pow(high / low, 0.04);
     return {axis, low / pad, high * pad};
   }
@@ -219,7 +223,7 @@ std::ptrdiff_t letters(const std::string& utf8) {
 
 /// Along the frame; a longer text in smaller letters.
 std::string y_label(const std::string& title, double middle, int height) {
-  constexpr double kSize = 12.5, kLetter = 0.56;  // [px], mean width over size
+  constexpr double kSize = 12.5, kLetter = 0.56;  // [px] and mean width over size
   const double fits = (height + kTop + kGap) / (kLetter * static_cast<double>(letters(title)));
   const std::string small =
       fits >= kSize ? "" : fmt::format(R"( style="font-size:{:.1f}px")", std::max(fits, 7.0));
@@ -230,8 +234,8 @@ std::string y_label(const std::string& title, double middle, int height) {
 
 /// Left of the frame; a longer number than fits between the label and the frame is narrowed.
 std::string y_tick(const std::string& number, double y) {
-  constexpr double kEnd = kLeft - 6, kLabelEnd = 18;
-  constexpr int kFits = 6;  // digits of 12 px
+  constexpr double kEnd = kLeft - 6, kLabelEnd = 18;  // [px]
+  constexpr int kFits = 6;                            // digits of 12 px
   const std::string narrowed =
       letters(number) <= kFits
           ? ""
@@ -285,7 +289,7 @@ std::string legend(const Plot& plot) {
 Ticks linear_ticks(double low, double high, bool degrees) {
   constexpr double kMost = 7;
   const auto number = [&](double step) {
-    return std::floor(high / step + 1e-9) - std::ceil(low / step - 1e-9) + 1;
+    return std::floor(high / step + kOnTick) - std::ceil(low / step - kOnTick) + 1;
   };
   Ticks t;
   if (degrees && number(45) >= 3) {
@@ -296,7 +300,7 @@ Ticks linear_ticks(double low, double high, bool degrees) {
       for (const double k : {1.0, 2.0, 2.5, 5.0})
         if (number(t.step) > kMost) t.step = k * unit;
   }
-  const double first = std::ceil(low / t.step - 1e-9);
+  const double first = std::ceil(low / t.step - kOnTick);
   for (int k = 0, count = static_cast<int>(number(t.step)); k < count; ++k)
     t.at.push_back((first + k) * t.step);
   return t;

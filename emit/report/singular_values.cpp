@@ -62,8 +62,9 @@ void drop_zero(std::vector<std::vector<double>>& curves) {
       if (std::isfinite(v)) largest = std::max(largest, v);
     return largest;
   };
+  constexpr double kNothing = 1e-11;  // of an eigenproblem whose entries have twelve digits
   const double largest = peak(curves.front());
-  while (!curves.empty() && peak(curves.back()) <= 1e-11 * largest) curves.pop_back();
+  while (!curves.empty() && peak(curves.back()) <= kNothing * largest) curves.pop_back();
 }
 
 /// None if all are zero.

@@ -21,7 +21,7 @@ constexpr const char* kStyle =
     ".c4{stroke:#95338c;stroke-width:1.5;stroke-dasharray:11 3 2 3}"
     ".c5{stroke:#7a5c00;stroke-width:2.7;stroke-dasharray:1.5 5}.c6{stroke:#444f8c}";
 
-constexpr double kLine = 20, kColumn = 250;
+constexpr double kLine = 20, kColumn = 250;  // [px]
 
 std::string text_at(const char* cls, double x, double y, const std::string& text) {
   return fmt::format(R"(<text class="{}" x="{}" y="{}">{}</text>)", cls, x, y, diagram::html(text));

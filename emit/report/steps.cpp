@@ -19,11 +19,14 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using linalg::at;
 
+/// Two values of one number, computed in two ways, are at least this much of each other.
+constexpr double kNearly = 1 - 1e-9;
+
 /// The next 1, 2 or 5 times a power of ten.
 double round_up(double t) {
   const double unit = std::pow(10.0, std::floor(std::log10(t)));
   for (const double k : {1.0, 2.0, 5.0})
-    if (t <= k * unit * (1 + 1e-12)) return k * unit;
+    if (t * kNearly <= k * unit) return k * unit;
   return 10 * unit;
 }
 
@@ -62,7 +65,7 @@ class Shares {
   }
 
  private:
-  static constexpr double kAround = 4, kNearly = 1 - 1e-9;
+  static constexpr double kAround = 4;
   std::vector<double> s_;
   std::vector<MatrixXd> G_;
 };

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <titop/emit/report/sweep.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/support/each_once.hpp>
 
 namespace titop::report {
@@ -27,13 +28,14 @@ std::vector<double> grid(const Subject& s) {
   const auto add = [&list, lowest = low, highest = high](double omega) {
     if (omega >= lowest && omega <= highest) list.push_back(omega);
   };
+  constexpr double kNarrowest = 1e-3;  // of the frequency: points around narrower peaks
   std::size_t refined = 0;
   for (const Pole& p : s.poles) {
     if (!p.pair || p.damping > 0.1 || p.omega < low || p.omega > high || ++refined > 150) continue;
-    const double width = std::max(std::abs(p.damping), 1e-3);
+    const double width = std::max(std::abs(p.damping), kNarrowest);
     for (const double k : {0.0, 0.3, 0.7, 1.0, 1.5, 2.5, 5.0, 10.0})
       for (const double sign : {-1.0, 1.0})
-        if (k > 0 || (sign > 0 && std::abs(p.damping) > 1e-6))
+        if (k > 0 || (sign > 0 && std::abs(p.damping) > linalg::kPoleOnAxis))
           add(p.omega * (1 + sign * k * width));
   }
   detail::keep_each_once(list);
@@ -52,10 +54,11 @@ Eigen::MatrixXcd transfer_or_none(const System& system, double omega) {
 }  // namespace
 
 std::vector<Pole> moving(const std::vector<Pole>& poles) {
+  constexpr double kAtRest = 1e-9;  // of the fastest pole: a free motion beside rounding
   std::vector<Pole> list;
   const double fastest = poles.empty() ? 0 : poles.back().omega;
   for (const Pole& p : poles)
-    if (p.omega > 1e-9 * fastest) list.push_back(p);
+    if (p.omega > kAtRest * fastest) list.push_back(p);
   return list;
 }
 

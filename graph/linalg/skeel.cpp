@@ -22,6 +22,8 @@ using SmallMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kSmall, kSmall>;
 
 constexpr double kSettled = 1e-3;  ///< relative: bounds of a radius that is known
+constexpr double kUsual = 1e150;   ///< products of two such numbers do not overflow
+constexpr double kTiny = 1e-300;   ///< beside 1: no divisor is 0
 
 /// From M^k, k = 1, 2, 4 ... 1024: the row sums v of M^k give max (M v)_i / v_i, never below the
 /// radius [Collatz 1942]; if that stays loose, |M^1024|^(1/1024), the norm's own factor n having
@@ -65,7 +67,7 @@ Powers perron_by_powers(Eigen::Index n, int steps, Times times) {
     grown = w.cwiseQuotient(v);
     const double most = grown.maxCoeff();
     if (most - grown.minCoeff() <= kSettled * most) return {most, true};
-    v = (w / w.maxCoeff()).cwiseMax(1e-300);
+    v = (w / w.maxCoeff()).cwiseMax(kTiny);
   }
   return {grown.maxCoeff(), false};
 }
@@ -191,7 +193,7 @@ struct Quotient {
   }
   double number() const { return exponent == 0 ? value : std::ldexp(value, exponent); }
   Quotient inverse() const { return {1 / value, -exponent}; }
-  static bool is_usual(double x) { return std::abs(x) > 1e-150 && std::abs(x) < 1e150; }
+  static bool is_usual(double x) { return std::abs(x) > 1 / kUsual && std::abs(x) < kUsual; }
 };
 
 /// p and 1/p belong to the same ring, turned round.

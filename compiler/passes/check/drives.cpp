@@ -2,6 +2,7 @@
 #include <titop/compiler/passes/check/checker.hpp>
 #include <titop/graph/drives.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::passes {
 namespace {
@@ -11,7 +12,7 @@ using linalg::at;
 /// Overlap of two driven parts of one channel.
 bool overlap(const Equation& a, const Equation& b) {
   if (a.part.whole() || b.part.whole()) return true;
-  return (a.part.rows() * b.part.rows().transpose()).cwiseAbs().maxCoeff() > 1e-12;
+  return (a.part.rows() * b.part.rows().transpose()).cwiseAbs().maxCoeff() > linalg::kAxisRounding;
 }
 
 /// Two driven parts that share some of their directions, and not all of them.
@@ -19,7 +20,7 @@ bool oblique(const Equation& a, const Equation& b) {
   if (a.part.whole() || b.part.whole()) return false;
   const Eigen::MatrixXd &A = a.part.rows(), &B = b.part.rows();
   const Eigen::MatrixXd left = B - B * A.transpose() * A;
-  return left.rowwise().norm().minCoeff() > 1e-9;
+  return left.rowwise().norm().minCoeff() > linalg::kMatrixDigits;
 }
 
 /// The direction of b that is at right angles to a, if both are one: "(0, 0.6, 0.8)".

@@ -3,6 +3,7 @@
 #include <titop/compiler/passes/check/dual_pairs.hpp>
 #include <titop/graph/declared.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::passes {
 namespace {
@@ -60,7 +61,8 @@ bool dual(const Weights& force, const Weights& motion) {
     const auto found = motion.find(channel);
     if (found == motion.end() || found->second.rows() != f.cols()) return false;
     const MatrixXd off = found->second - f.transpose();
-    if (!(off.cwiseAbs().maxCoeff() <= 1e-14 * f.cwiseAbs().maxCoeff())) return false;
+    if (!(off.cwiseAbs().maxCoeff() <= linalg::kProductRounding * f.cwiseAbs().maxCoeff()))
+      return false;
   }
   return true;
 }
