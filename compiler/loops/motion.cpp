@@ -4,12 +4,14 @@
 #include <titop/compiler/loops/common_rotation.hpp>
 #include <titop/compiler/loops/gap.hpp>
 #include <titop/compiler/loops/motion.hpp>
+#include <titop/compiler/loops/relations.hpp>
 #include <titop/compiler/passes/union_find.hpp>
 #include <titop/graph/closed_form.hpp>
 #include <titop/graph/drives.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/linalg/rounding.hpp>
+#include <titop/graph/linalg/similarity_scaling.hpp>
 #include <utility>
 
 namespace titop::loops {
@@ -23,6 +25,14 @@ bool has_orthonormal_rows(const MatrixXd& m) {
   return m.rows() <= m.cols() &&
          (m * m.transpose() - MatrixXd::Identity(m.rows(), m.rows())).cwiseAbs().maxCoeff() <=
              linalg::kMatrixDigits;
+}
+
+/// In any unit of length: lever arms are entries beside 1.
+bool invertible(const MatrixXd& tau) {
+  if (tau.rows() != tau.cols()) return false;
+  if (linalg::inverse(tau).rcond > kMatrixDigits) return true;
+  const auto [row, column] = linalg::two_sided_scaling(tau);
+  return linalg::inverse(row.asDiagonal() * tau * column.asDiagonal()).rcond > kMatrixDigits;
 }
 
 }  // namespace
@@ -69,7 +79,7 @@ void Motion::add_body(int index, ParameterValues values) {
     const bool carried = !tau.isZero(0);
     Edge e{.to = point, .from = carried ? node.first_channel + k->reference : ground_};
     e.R = carried ? tau : MatrixXd(tau.rows(), 0);
-    e.one_way = tau.rows() != tau.cols() || !(linalg::inverse(tau).rcond > 1e-12);
+    e.one_way = !invertible(tau);
     if (node.state >= 0) e.own[{FormColumn::Kind::states, index}] = k->Phi[at(i)];
     if (closed) e.own[{FormColumn::Kind::root, point}] = MatrixXd::Identity(tau.rows(), tau.rows());
     edges_.push_back(std::move(e));
@@ -138,7 +148,7 @@ std::optional<Motion::Edge> Motion::edge_of(const Tie& tie) const {
   const bool six = c.cols() == 6, orthonormal = has_orthonormal_rows(c);
   e.rigid = six ? tie.rotation.has_value() : orthonormal;
   if (!orthonormal &&
-      (c.rows() != c.cols() || free.rows() > 0 || !(linalg::inverse(c).rcond > 1e-3)))
+      (c.rows() != c.cols() || free.rows() > 0 || !(linalg::inverse(c).rcond > kGoodPivot)))
     return std::nullopt;
   // Freedom of the joint is counted from the other side: any completion of c suffices. One that
   // moves both points as one body has no gap.
