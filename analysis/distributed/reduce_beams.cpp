@@ -1,17 +1,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <titop/analysis/distributed/compare.hpp>
 #include <titop/analysis/distributed/reduce_beams.hpp>
 #include <titop/analysis/distributed/with_blocks.hpp>
+#include <titop/analysis/reduction/bound.hpp>
 #include <titop/analysis/reduction/compile_scene.hpp>
 #include <titop/blocks/exact_beam.hpp>
 #include <titop/blocks/flexible_body.hpp>
 #include <titop/blocks/specified.hpp>
 #include <titop/compiler/system/compile_graph.hpp>
+#include <titop/graph/support/some_names.hpp>
 
 namespace titop {
 namespace {
@@ -21,7 +24,6 @@ using std::numbers::pi;
 constexpr double kShare = 0.25;  ///< of the accuracy: error of the finite beams
 constexpr double kFiner = 1.5;   ///< more elements and modes, if it is larger
 constexpr int kMostElements = 200;
-constexpr int kTries = 5;  ///< reductions
 
 const ExactBeam* exact_beam(const Block& block) {
   const auto* spec = dynamic_cast<const Specified<ExactBeam>*>(&block);
@@ -103,11 +105,24 @@ bool at_limit(const std::vector<FiniteBeam>& beams) {
                              [](const FiniteBeam& b) { return b.elements == kMostElements; });
 }
 
-[[noreturn]] void refuse(const ErrorBound& error, const char* subject) {
+[[noreturn]] void refuse(const ErrorBound& error, const std::string& subject) {
   throw Error(Code::bad_value,
               fmt::format("{} differ from the distributed ones by {:.2g} at {:.4g} Hz ({} by {})",
                           subject, error.worst, error.hertz, error.output, error.input),
               "raise Scene::accuracy, or lower the band's upper end");
+}
+
+[[noreturn]] void refuse_size(const ErrorBound& error, const std::vector<FiniteBeam>& beams) {
+  std::vector<std::string> names;
+  for (const FiniteBeam& beam : beams) names.push_back(beam.name);
+  refuse(error, fmt::format("{} with {} elements", detail::some_names(names), kMostElements));
+}
+
+/// Accuracies of the reduction to try. The errors of beams and reduction seldom add: first the
+/// whole. If they do, the first is e of peaks that are 1 + e times as large, and `compare` divides
+/// the sum, which it samples, by cos(kPhase / 2).
+std::array<double, 2> accuracies(double whole, double e) {
+  return {whole, (whole - e) / (1 + e) * std::cos(detail::kPhase / 2)};
 }
 
 }  // namespace
@@ -128,19 +143,19 @@ ReducedBeams reduce_beams(const Diagram& diagram, const Scene& scene, const Opti
     if (of_beams.worst <= kShare * scene.accuracy) break;
     if (!at_limit(beams)) continue;
     if (of_beams.worst < scene.accuracy) break;
-    refuse(of_beams, "beams of 200 elements");
+    refuse_size(of_beams, beams);
   }
   Scene rest = scene;
   rest.inputs.clear(), rest.outputs.clear();  // the graph has them already
-  // The errors of beams and reduction seldom add: the whole accuracy first, then what is left of
-  // it, then halves.
-  for (int k = 0;; ++k) {
-    if (k > 0) rest.accuracy = (scene.accuracy - of_beams.worst) * std::pow(0.5, k - 1);
-    const ReducedSystem system = detail::compile_scene(with_beams, rest, options);
-    const ErrorBound error = compare(system, exact);
+  ErrorBound error;
+  for (const double accuracy : accuracies(scene.accuracy, of_beams.worst)) {
+    rest.accuracy = accuracy;
+    const ReducedSystem system =
+        detail::compile_scene(with_beams, rest, options, detail::Order::least);
+    error = compare(system, exact);
     if (error.worst <= scene.accuracy) return {system, beams, error, of_beams};
-    if (k + 1 == kTries) refuse(error, "the reduced beams");
   }
+  refuse(error, "the reduced beams");
 }
 
 std::string to_string(const ReducedBeams& reduced) {

@@ -4,16 +4,21 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <ranges>
 #include <titop/analysis/reduction/reduction.hpp>
 #include <titop/analysis/reduction/sequence.hpp>
 #include <titop/analysis/reduction/sharpen.hpp>
+#include <titop/analysis/reduction/spare.hpp>
 #include <titop/analysis/reduction/twins.hpp>
+#include <utility>
 
 namespace titop::detail {
 namespace {
 
 using Eigen::Index;
 using std::numbers::pi;
+
+constexpr double kMore = 1.5;  ///< of the coordinates that suffice: from these some are spared
 
 class ByModes : public Reduction {
  public:
@@ -37,7 +42,7 @@ class ByModes : public Reduction {
     const double start = now();
     const std::optional<std::size_t> step = first_within(accuracy);
     if (!step) return std::nullopt;
-    ReducedData d = setting_.result(sequence().model(*step), bounds_.at(*step));
+    ReducedData d = setting_.order == Order::least ? least_model(*step, accuracy) : model_of(*step);
     d.steps.push_back({"whole", static_cast<int>(whole_.order() + whole_.far),
                        static_cast<int>(d.small.order()), d.bound.worst,
                        "modes of the band, and static-like vectors of those above it"});
@@ -77,19 +82,48 @@ class ByModes : public Reduction {
     return *sequence_;
   }
 
+  ErrorBound bound_of(const Small& small) const {
+    return setting_.bound(whole_, small.poles(),
+                          [&](std::complex<double> s) { return small.transfer(s); });
+  }
+
   const ErrorBound& bound_of(std::size_t step) {
     const auto found = bounds_.find(step);
     if (found != bounds_.end()) return found->second;
-    const Small small = sequence().model(step);
-    return bounds_
-        .emplace(step, setting_.bound(whole_, small.poles(),
-                                      [&](std::complex<double> s) { return small.transfer(s); }))
-        .first->second;
+    return bounds_.emplace(step, bound_of(sequence().model(step))).first->second;
   }
+
+  /// The model of this step, whose bound is at most the accuracy.
+  ReducedData model_of(std::size_t step) {
+    return setting_.result(sequence().model(step), bounds_.at(step));
+  }
+
+  /// The same, or a model with fewer coordinates, whose bound is too: of a sequence with half as
+  /// many again, without those that can be spared.
+  ReducedData least_model(std::size_t step, double accuracy) {
+    const std::size_t count = sequence().choice(step).size();
+    std::size_t last = step;
+    while (static_cast<double>(sequence().choice(last).size()) <
+               kMore * static_cast<double>(count) &&
+           (last + 1 < sequence().steps().size() || sequence().grow()))
+      ++last;
+    const auto fewer =
+        spared(sequence(), setting_.samples, sequence().choice(last), target_of(accuracy));
+    for (const Sequence::Choice& choice : fewer | std::views::reverse) {
+      if (choice.size() >= count) break;
+      Small small = sequence().model(choice);
+      ErrorBound bound = bound_of(small);
+      if (bound.worst <= accuracy) return setting_.result(std::move(small), std::move(bound));
+    }
+    return model_of(step);
+  }
+
+  /// Largest error on the samples.
+  static double target_of(double accuracy) { return accuracy * std::cos(kPhase / 2); }
 
   /// The bound costs more than the error on the samples, which goes first.
   std::optional<std::size_t> first_within(double accuracy) {
-    const double target = accuracy * std::cos(kPhase / 2);
+    const double target = target_of(accuracy);
     for (std::size_t k = 0; true; ++k) {
       const auto& steps = sequence().steps();
       if (k == steps.size() && !sequence().grow()) return std::nullopt;

@@ -34,8 +34,10 @@ int states_of(const Graph& graph) {
 class SceneReduction {
  public:
   /// `finest`: the smallest accuracy that will be required.
-  SceneReduction(const Graph& whole, const Scene& scene, const Options& options, double finest)
+  SceneReduction(const Graph& whole, const Scene& scene, const Options& options, double finest,
+                 detail::Order order = detail::Order::nested)
       : setting_(scene, options, finest, states_of(whole)) {
+    setting_.order = order;
     detail::check(scene);
     const Graph graph = detail::restricted(whole, scene);
     if (graph.inputs.empty() || graph.outputs.empty())
@@ -210,13 +212,13 @@ double seconds_of(const ReducedSystem& m, double omega) {
 
 }  // namespace
 
-ReducedSystem detail::compile_scene(const Graph& graph, const Scene& scene,
-                                    const Options& options) {
-  return SceneReduction(graph, scene, options, scene.accuracy).reach(scene.accuracy);
+ReducedSystem detail::compile_scene(const Graph& graph, const Scene& scene, const Options& options,
+                                    Order order) {
+  return SceneReduction(graph, scene, options, scene.accuracy, order).reach(scene.accuracy);
 }
 
 ReducedSystem compile(const Diagram& diagram, const Scene& scene, const Options& options) {
-  return detail::compile_scene(diagram.graph(), scene, options);
+  return detail::compile_scene(diagram.graph(), scene, options, detail::Order::nested);
 }
 
 std::vector<WhatIf> what_if(const Diagram& diagram, const Scene& scene,

@@ -14,6 +14,10 @@ inline double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+/// Coordinates of a model in second order: those of one sequence, so that more accuracy never gives
+/// a smaller order; or without those that can be spared.
+enum class Order { nested, least };
+
 /// State of a reduction, common to all methods: the scene, the compiled model, and the results so
 /// far.
 struct Setting {
@@ -27,9 +31,10 @@ struct Setting {
   System full{nullptr};   ///< as in the scene
   System model{nullptr};  ///< with smaller bodies; the same if these are not needed
   std::shared_ptr<const SystemData> data;  ///< of `model`
-  bool smaller = false;                    ///< bodies have lost modes first, if they had any
-  std::string bodies;                      ///< which ones; empty: none
-  std::string why;                         ///< `model` is no structure; empty: it is
+  Order order = Order::nested;
+  bool smaller = false;  ///< bodies have lost modes first, if they had any
+  std::string bodies;    ///< which ones; empty: none
+  std::string why;       ///< `model` is no structure; empty: it is
   Band band;
   Samples samples;  ///< the full system's transfers where it or `model` can have peaks
   std::vector<Note> notes;

@@ -45,6 +45,19 @@ bool collocated(const Whole& w) {
   return true;
 }
 
+/// W with the part of a column of norm 1 that is orthogonal to it; false if that is rounding.
+bool append(MatrixXd& W, VectorXd column) {
+  for (int twice = 0; twice < 2; ++twice) {
+    column -= W * (W.transpose() * column);
+    const double left = column.norm();
+    if (left < linalg::kInSpan) return false;
+    column /= left;
+  }
+  W.conservativeResize(Eigen::NoChange, W.cols() + 1);
+  W.rightCols<1>() = column;
+  return true;
+}
+
 }  // namespace
 
 MatrixXcd difference(const Samples& full, const MatrixXcd& Hr, std::size_t k) {
@@ -76,13 +89,20 @@ Sequence::Sequence(const Whole& whole, const Samples& samples, double high)
     below_.push_back(whole.lambda(j) < low * low && whole.damping(j) < low);
   is_kept_.assign(at(n), 0);
   W_.resize(n, 0);
+  added_.resize(n, 0);
   worst_ = evaluate();
   note(worst_);
 }
 
-Small Sequence::model(std::size_t step) const {
+Sequence::Choice Sequence::choice(std::size_t step) const {
   const Step& s = steps_[step];
-  return small({kept_.begin(), kept_.begin() + s.kept}, W_.leftCols(s.columns));
+  return {{kept_.begin(), kept_.begin() + s.kept}, added_.leftCols(s.columns)};
+}
+
+Small Sequence::model(const Choice& choice) const {
+  MatrixXd W(choice.vectors.rows(), 0);
+  for (Index i = 0; i < choice.vectors.cols(); ++i) append(W, choice.vectors.col(i));
+  return small(choice.kept, W);
 }
 
 /// The projection, plus the high-frequency asymptote of the modes below the band that are not kept.
@@ -162,14 +182,9 @@ bool Sequence::add(VectorXd column) {
   const double size = column.norm();
   if (!(size > 0) || !std::isfinite(size)) return false;
   column /= size;
-  for (int twice = 0; twice < 2; ++twice) {
-    column -= W_ * (W_.transpose() * column);
-    const double left = column.norm();
-    if (left < linalg::kInSpan) return false;
-    column /= left;
-  }
-  W_.conservativeResize(Eigen::NoChange, W_.cols() + 1);
-  W_.rightCols<1>() = column;
+  if (!append(W_, column)) return false;
+  added_.conservativeResize(Eigen::NoChange, W_.cols());
+  added_.rightCols<1>() = column;
   return true;
 }
 

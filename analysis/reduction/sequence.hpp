@@ -50,7 +50,16 @@ class Sequence {
     double error = 0;                    ///< on the samples
   };
   const std::vector<Step>& steps() const { return steps_; }
-  Small model(std::size_t step) const;
+  Small model(std::size_t step) const { return model(choice(step)); }
+
+  /// The coordinates of a model beside the motions without stiffness.
+  struct Choice {
+    std::vector<Eigen::Index> kept;  ///< modes of the band
+    Eigen::MatrixXd vectors;         ///< as they were added, not orthogonal: elastic modes x count
+    std::size_t size() const { return kept.size() + static_cast<std::size_t>(vectors.cols()); }
+  };
+  Choice choice(std::size_t step) const;
+  Small model(const Choice& choice) const;
 
  private:
   struct WorstPair {
@@ -77,6 +86,7 @@ class Sequence {
   std::vector<Eigen::Index> kept_;
   std::vector<char> is_kept_;
   Eigen::MatrixXd W_;        ///< elastic modes x columns
+  Eigen::MatrixXd added_;    ///< the same before they were made orthogonal
   Eigen::VectorXd pending_;  ///< the output's column to the input's that came last; or empty
   Small model_;
   WorstPair worst_;

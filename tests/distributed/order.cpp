@@ -6,7 +6,8 @@
 using namespace titop_test;
 
 TEST_CASE("random trees of distributed beams and bodies: error below the accuracy, least order") {
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+  // In the last three, one sequence of vectors without sparing takes 1.4 to 2 times the least.
+  for (const std::uint64_t seed : {1, 2, 3, 4, 12, 24, 158}) {
     const OrderBesideLeast r = order_beside_least(RandomBeams(seed));
     INFO(seed << '\n' << to_string(r.reduced) << "least order found: " << r.least);
     CHECK(r.reduced.error.worst <= RandomBeams(seed).scene.accuracy);

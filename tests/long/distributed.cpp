@@ -5,18 +5,14 @@
 /// Random scenes of distributed beams and bodies through reduce_beams; see tests/distributed.
 using namespace titop_test;
 
-TEST_CASE(
-    "100 random scenes of distributed beams: error below the accuracy, order near the least") {
-  int near = 0;
-  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+TEST_CASE("300 random scenes of distributed beams: error below the accuracy, least order") {
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     const RandomBeams scene(seed);
     const OrderBesideLeast r = order_beside_least(scene);
     INFO(seed << '\n' << to_string(r.reduced) << "least order found: " << r.least);
     CHECK(r.reduced.error.worst <= scene.scene.accuracy);
     CHECK(r.error <= scene.scene.accuracy);
     CHECK(r.least >= 0);
-    CHECK(r.reduced.system.order() <= 2 * r.least + 2);
-    near += within(r.reduced.system.order(), r.least);
+    CHECK(within(r.reduced.system.order(), r.least));
   }
-  CHECK(near >= 95);  // in the others a vector that came early is spared by later ones
 }
