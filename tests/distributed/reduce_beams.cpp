@@ -8,9 +8,11 @@
 #include <titop/titop.hpp>
 
 #include "random_beams.hpp"
+#include "scenes/two_link_arm.hpp"
 #include "support/mistakes.hpp"
 
 using namespace titop;
+using namespace scenes::two_link_arm;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using titop_test::error_of;
@@ -19,43 +21,7 @@ using Complex = std::complex<double>;
 
 namespace {
 
-ExactBeam link(double length, double diameter) {
-  return {.length = length,
-          .section = tube(diameter, 0.8 * diameter),
-          .material = {.E = 70e9, .nu = 0.33, .rho = 2700},
-          .damping = {.mass = 0.02, .stiffness = 2e-5}};
-}
-
-const Vector3d kZ(0, 0, 1);
-
-/// Two links on a free hub, the elbow on a spring; `add` makes the links.
-template <class Add>
-Diagram arm(Add add) {
-  Diagram d{"arm"};
-  auto hub = d.add("hub", RigidBody{.mass = 60,
-                                    .inertia = Vector3d(5, 6, 7).asDiagonal(),
-                                    .children = {{"arm", {0.4, 0, 0}}}});
-  auto upper = add(d, "upper", link(3, 0.08)), lower = add(d, "lower", link(2, 0.05));
-  hub.parent.force = -d.input("F", 6);
-  mount(upper, hub.child("arm"));
-  auto elbow = hinge(d, "elbow", lower, upper.child("C"), Rotation::about(kZ, 0.7), kZ);
-  elbow.torque = 900 * elbow.angle + 4 * elbow.rate + d.input("T");
-  auto hand = d.add("hand", RigidBody{.mass = 3, .inertia = 0.02 * Matrix3d::Identity()});
-  mount(hand, lower.child("C"));
-  d.output("hub", 6) = hub.parent.accel;
-  d.output("hand", 6) = hand.parent.accel;
-  return d;
-}
-
-Diagram exact_arm() {
-  return arm([](Diagram& d, const char* name, const ExactBeam& b) { return d.add(name, b); });
-}
-
-Diagram arm_of(int elements) {
-  return arm([&](Diagram& d, const char* name, const ExactBeam& b) {
-    return BodyHandle(d.add(name, FlexibleBody{with_elements(b, elements)}));
-  });
-}
+Diagram exact_arm() { return arm(upper, lower); }
 
 const Scene kScene{.band_hz = {0, 40}, .accuracy = 1e-3};
 
@@ -86,12 +52,12 @@ TEST_CASE("compare: the error of a mesh falls with h^4, and bounds that of a fin
 TEST_CASE("compare refuses other inputs, and two models without a state space") {
   const System exact = compile(exact_arm()), finite = compile(arm_of(2));
   Diagram d{"one beam"};
-  auto b = d.add("b", link(1, 0.05));
+  auto b = d.add("b", lower);
   b.parent.accel = 0;
-  b.child.force = d.input("F", 6);
+  b.child.force.linear = d.input("F", 3);
   d.output("a", 6) = b.child.accel;
   CHECK(says(error_of([&] { compare(finite, compile(d), kScene); }), Code::bad_value,
-             {"inputs", "7", "6"}));
+             {"inputs", "6", "3"}));
   CHECK(says(error_of([&] { compare(exact, exact, kScene); }), Code::not_rational, {"upper"}));
   CHECK(says(error_of([&] { compare(finite, exact, {.band_hz = {2, 1}}); }), Code::bad_value, {}));
 }
@@ -124,16 +90,15 @@ TEST_CASE("compare refuses what has no gain at 0, and models without inputs or o
     d.output("y", 6) = position ? b.parent.position : b.parent.rate;
     return d;
   };
-  const FlexibleBody finite{with_elements(link(1, 0.05), 4)};
+  const FlexibleBody finite{with_elements(lower, 4)};
   for (const bool position : {true, false}) {
-    const System a = compile(free_beam(position, finite)),
-                 b = compile(free_beam(position, link(1, 0.05)));
+    const System a = compile(free_beam(position, finite)), b = compile(free_beam(position, lower));
     const auto at = [&](double low) { return compare(a, b, {.band_hz = {low, 50}}); };
     CHECK(says(error_of([&] { at(0); }), Code::bad_value, {"y(", "F(", "0 Hz", "band_hz"}));
     CHECK(at(1).worst < 1);
   }
   Diagram none{"none"};
-  none.add("b", link(1, 0.05)).parent.accel = 0;
+  none.add("b", lower).parent.accel = 0;
   CHECK(says(error_of([&] { compare(compile(none), compile(none), kScene); }), Code::not_rational,
              {"b"}));
 }
@@ -149,6 +114,6 @@ TEST_CASE("what needs a state space refuses distributed beams, and names them") 
   CHECK(refused([&] { mode_shapes(system, std::vector<int>{0}); }));
   CHECK(refused([&] { interface_bracket([](Lumping) { return exact_arm(); }); }));
   Diagram part{"part"};
-  part.add("upper", link(3, 0.08));
+  part.add("upper", upper);
   CHECK(refused([&] { damping_of_assembly(part, "upper.parent", {{"C", "upper.C"}}, 0.003); }));
 }

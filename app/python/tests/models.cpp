@@ -40,6 +40,7 @@
 #include "scenes/solar_array.hpp"
 #include "scenes/solar_array_drive.hpp"
 #include "scenes/telecom.hpp"
+#include "scenes/two_link_arm.hpp"
 #include "scenes/wheels.hpp"
 #include "telecom_law.hpp"
 
