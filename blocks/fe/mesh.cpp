@@ -159,6 +159,11 @@ std::string dof_name(const Mesh& mesh, Index row) {
   return fmt::format("{}.{}", name, component_name(dof.component));
 }
 
+bool is_plate_node(const Mesh& mesh, std::size_t point) {
+  return std::ranges::any_of(
+      mesh.dofs, [&](const Dof& dof) { return dof.point == point && dof.component == kTwist; });
+}
+
 std::size_t find_point(const Mesh& mesh, const std::string& name) {
   for (const MeshInterface& interface : mesh.interfaces)
     if (interface.name == name) return interface.point;
@@ -218,6 +223,10 @@ std::array<Index, 6> interface_rows(const Mesh& mesh, const std::string& name,
                               "in them"
                             : "tie it to a node with rotations (a rigid body element) in the "
                               "finite-element program";
+  if (!planar && is_plate_node(mesh, point))
+    hint =
+        "a node of a plate with a membrane has no rotation about z: take several, by fe::rigid or "
+        "fe::average over the real footprint";
   for (const MeshInterface& other : mesh.interfaces)
     if (std::ranges::find(other.nodes, point) != other.nodes.end())
       hint = fmt::format(

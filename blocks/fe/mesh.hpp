@@ -92,6 +92,9 @@ Mesh symmetrised(Mesh mesh);
 /// "17.x", "C.ry", "3,4.wxy" (an interface's name before its point's). Row counts from 0.
 std::string dof_name(const Mesh& mesh, Eigen::Index row);
 
+/// True for a node of a plate, which has a row kTwist.
+bool is_plate_node(const Mesh& mesh, std::size_t point);
+
 /// Index into Mesh::points of the interface or point of this name; throws `unknown_name` with the
 /// list of interfaces.
 std::size_t find_point(const Mesh& mesh, const std::string& name);

@@ -222,10 +222,7 @@ ModalLine line_of(const Mesh& mesh, const MeshLine& line, const MatrixXd& Phi) {
 /// Warns of a clamp or a moment at one node of a plate.
 void warn_of_plate_node(const Mesh& mesh, const std::string& name, bool parent,
                         std::vector<std::string>& warnings) {
-  const std::size_t point = find_point(mesh, name);
-  if (std::ranges::none_of(
-          mesh.dofs, [&](const Dof& dof) { return dof.point == point && dof.component == kTwist; }))
-    return;
+  if (!is_plate_node(mesh, find_point(mesh, name))) return;
   warnings.push_back(
       fmt::format("{} is one node of {}: {} there does not converge with the mesh (the slope grows "
                   "with the logarithm of 1/h): use fe::rigid or fe::average over the real "

@@ -15,16 +15,39 @@ void bind_plate(py::module_& m) {
       .def_readonly("D12", &PlateStiffness::D12)
       .def_readonly("D22", &PlateStiffness::D22)
       .def_readonly("D66", &PlateStiffness::D66);
+  py::class_<MembraneStiffness>(
+      m, "MembraneStiffness",
+      "Stiffness in the plane of an orthotropic plate [N/m]: N_x = A11 u_x + A12 v_y, N_y = A12 "
+      "u_x + A22 v_y, N_xy = A66 (u_y + v_x).")
+      .def(py::init([](double A11, double A12, double A22, double A66) {
+             return MembraneStiffness{A11, A12, A22, A66};
+           }),
+           "A11"_a, "A12"_a, "A22"_a, "A66"_a)
+      .def_readonly("A11", &MembraneStiffness::A11)
+      .def_readonly("A12", &MembraneStiffness::A12)
+      .def_readonly("A22", &MembraneStiffness::A22)
+      .def_readonly("A66", &MembraneStiffness::A66);
   py::class_<Plate>(m, "Plate",
                     "Rectangular thin plate (Kirchhoff) in the plane z = 0, 0 <= x <= a, 0 <= y <= "
-                    "b [m], of this thickness [m]: it bends along z, rx, ry and is rigid in its "
-                    "plane. D: PlateStiffness in place of E, nu, G. elements: along x and y.")
+                    "b [m], of this thickness [m]: it bends along z, rx, ry; in_plane it is "
+                    "\"rigid\" or a \"membrane\". D: PlateStiffness in place of E, nu, G, and A: "
+                    "MembraneStiffness of a membrane with D. elements: along x and y.")
       .def(py::init([](double a, double b, double thickness, const Material& material,
-                       const std::optional<PlateStiffness>& D, const std::array<int, 2>& elements) {
-             return Plate{a, b, thickness, material, D, elements};
+                       const std::optional<PlateStiffness>& D, const std::array<int, 2>& elements,
+                       const std::string& in_plane, const std::optional<MembraneStiffness>& A) {
+             return Plate{
+                 a,
+                 b,
+                 thickness,
+                 material,
+                 D,
+                 elements,
+                 named<InPlane>(in_plane, "in_plane",
+                                {{"rigid", InPlane::rigid}, {"membrane", InPlane::membrane}}),
+                 A};
            }),
            py::kw_only(), "a"_a, "b"_a, "thickness"_a, "material"_a, "D"_a = py::none(),
-           "elements"_a = std::array<int, 2>{8, 8})
+           "elements"_a = std::array<int, 2>{8, 8}, "in_plane"_a = "rigid", "A"_a = py::none())
       .def_readonly("a", &Plate::a)
       .def_readonly("b", &Plate::b)
       .def_readonly("thickness", &Plate::thickness)
