@@ -2,34 +2,9 @@
 
 #include <titop/blocks/flexible_body.hpp>
 #include <titop/blocks/spring_mass.hpp>
-#include <titop/graph/state_space.hpp>
+#include <titop/graph/port_hamiltonian.hpp>
 
 namespace titop {
-
-/// A block as a port-Hamiltonian system, [Alazard 2015] eqs (7) and (17), with x = [q; p]:
-///
-///     H = x' Q x / 2,    xdot = (J - R) Q x + G u,    y = N pdot + P u
-///
-/// J skew, R symmetric and positive semidefinite. For modes q = eta and p = etadot (17 in modal
-/// coordinates, valid for any number of kept modes). The energy is that of the motion relative to
-/// P: dH/dt = (Q x)' G u - (Q x)' R (Q x), damping never adds any.
-struct PortHamiltonian {
-  Eigen::MatrixXd Q;  ///< 2n x 2n, Hessian of H
-  Eigen::MatrixXd J;  ///< 2n x 2n, interconnection
-  Eigen::MatrixXd R;  ///< 2n x 2n, dissipation
-  Eigen::MatrixXd G;  ///< 2n x inputs
-  Eigen::MatrixXd N;  ///< outputs x n
-  Eigen::MatrixXd P;  ///< outputs x inputs
-
-  /// H [J]. These throw size for vectors of another size.
-  double energy(const Eigen::VectorXd& x) const;
-  /// Power at the ports, (Q x)' G u [W]; dH/dt = supplied - dissipated.
-  double supplied(const Eigen::VectorXd& x, const Eigen::VectorXd& u) const;
-  /// (Q x)' R (Q x) >= 0 [W].
-  double dissipated(const Eigen::VectorXd& x) const;
-  /// A, B, C, D of the same system in the coordinates x, without names.
-  StateSpace state_space() const;
-};
 
 /// Eq. (7): q = stretch, p = m times its rate. Parameters at their nominal values; the spec is not
 /// checked.
@@ -37,10 +12,5 @@ PortHamiltonian port_hamiltonian(const SpringMass& spec);
 /// Eq. (17) in modal coordinates. Parameters at their nominal values. Throws not_rational for a
 /// body with a loss factor.
 PortHamiltonian port_hamiltonian(const FlexibleBody& body);
-
-namespace detail {
-/// J = [0, I; -I, 0] and R = diag(0, damping), n x n; nothing else.
-PortHamiltonian canonical(const Eigen::MatrixXd& damping);
-}  // namespace detail
 
 }  // namespace titop

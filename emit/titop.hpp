@@ -11,7 +11,6 @@
 #include <titop/analysis/damping/damping_of_assembly.hpp>
 #include <titop/analysis/damping/structural_damping.hpp>
 #include <titop/analysis/distributed/compare.hpp>
-#include <titop/analysis/distributed/port_hamiltonian.hpp>
 #include <titop/analysis/distributed/reduce_beams.hpp>
 #include <titop/analysis/lft/derivatives.hpp>
 #include <titop/analysis/lft/lft.hpp>

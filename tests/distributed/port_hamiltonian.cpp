@@ -1,7 +1,6 @@
 // Reduced models of distributed beams as port-Hamiltonian systems: structure, energy, passivity.
 #include <doctest/doctest.h>
 
-#include <titop/analysis/distributed/port_hamiltonian.hpp>
 #include <titop/blocks/exact_beam.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/titop.hpp>

@@ -1,9 +1,10 @@
 #include <fmt/format.h>
 
-#include <titop/analysis/distributed/port_hamiltonian.hpp>
+#include <titop/analysis/reduction/reduced_system.hpp>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/rounding.hpp>
+#include <titop/graph/port_hamiltonian.hpp>
 
 namespace titop {
 
