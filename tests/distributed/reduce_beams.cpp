@@ -82,6 +82,18 @@ TEST_CASE("reduce_beams: elements and modes for an accuracy against the distribu
   }
 }
 
+TEST_CASE("reduce_beams refuses an accuracy that 200 elements do not reach, and names the beam") {
+  Diagram d{"one beam"};
+  auto b = d.add("boom", upper);
+  b.parent.accel = 0;
+  b.child.force = d.input("F", 6);
+  d.output("a", 6) = b.child.accel;
+  CHECK(says(error_of([&] {
+               reduce_beams(d, {.band_hz = {0, 100}, .accuracy = 1e-11});
+             }),
+             Code::bad_value, {"boom", "200", "accuracy"}));
+}
+
 TEST_CASE("compare refuses what has no gain at 0, and models without inputs or outputs") {
   const auto free_beam = [](bool position, auto spec) {
     Diagram d{"free beam"};
