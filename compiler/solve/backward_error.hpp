@@ -36,8 +36,8 @@ enum class Refinement { none, settled };
 /// to half of its last value or less, five times at most (as LAPACK's xGERFS does). The backward
 /// error alone is no reason to refuse: rows between unknowns that are 0 up to rounding, as at
 /// points that closed chains immobilise, have a residual as large as their terms. Callers judge the
-/// outputs (Evaluation::losses). O(front sizes^2) and the rows once, per column. Adds the columns
-/// solved for to `columns`, if it is given.
+/// solution (RefinedSolution::holds). O(front sizes^2) and the rows once, per column. Adds the
+/// columns solved for to `columns`, if it is given.
 template <class T>
 RowMatrix<T> settled(const JointRows<T>& rows, const Factors<T>& factors, const RowMatrix<T>& rhs,
                      int* columns = nullptr);

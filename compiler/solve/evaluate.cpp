@@ -61,8 +61,8 @@ Error not_refined(const Factored& data, std::complex<double> s, double error) {
     return {Code::not_finite, place + "numbers exceed the range of this precision",
             "take Precision::digits50, an s of smaller or larger modulus, or other units"};
   return {Code::singular,
-          place + "refinement does not reach 12 digits: the factors in double have too few",
-          "take Precision::as_needed or Precision::digits50"};
+          place + "refinement does not reach 12 digits: the factors of this precision have too few",
+          "take Precision::as_needed or Precision::digits50, or another s"};
 }
 
 template <class T>

@@ -16,7 +16,7 @@ using solve::kUnderflow;
 /// The error of an evaluation at s, if s is a pole or numerically one.
 Error no_digit_left(const Factored& data, std::complex<double> s);
 
-/// The error if Evaluation::refinement_error() is too large.
+/// The error if RefinedSolution::refinement_error() is too large, or if it does not hold (1).
 Error not_refined(const Factored& data, std::complex<double> s, double error);
 
 /// A larger change of the outputs needs another step of refinement, in any precision; a larger
@@ -120,6 +120,15 @@ class Evaluation final : public RefinedSolution<T> {
     return rows_.residual(rhs_, unknowns_, magnitudes);
   }
   double relative_to_results(const solve::RowMatrix<T>& change_of_unknowns) const override;
+  double backward_error(const solve::RowMatrix<T>& residual,
+                        const solve::RowMatrix<double>& magnitudes) const override {
+    return solve::backward_error(*data_.skeleton->as_written().plan, residual, magnitudes);
+  }
+  double backward_error_of_rounding(double epsilon) const override {
+    return solve::backward_error_of_rounding(*data_.skeleton->as_written().plan, epsilon);
+  }
+  Eigen::VectorXd unit_sizes() const override;
+  Eigen::VectorXd sums_of(const Eigen::VectorXd& sizes) const override;
   Eigen::ArrayXd sizes_of_unknowns(
       const solve::RowMatrix<std::complex<double>>& unknowns) const override;
   /// The columns' groups.

@@ -130,12 +130,31 @@ Eigen::ArrayXd Evaluation<T>::sizes_of_unknowns(
   return sizes.head(n);
 }
 
+template <class T>
+Eigen::VectorXd Evaluation<T>::unit_sizes() const {
+  const std::vector<std::int16_t>& exponents = data_.scale()->of_unknowns;
+  Eigen::VectorXd sizes(std::ssize(exponents));
+  for (Eigen::Index i = 0; i < sizes.size(); ++i) sizes(i) = std::ldexp(1.0, exponents[at(i)]);
+  return sizes;
+}
+
+template <class T>
+Eigen::VectorXd Evaluation<T>::sums_of(const Eigen::VectorXd& sizes) const {
+  const solve::RowMatrix<T> x = solve::lifted<T>(sizes),
+                            none = solve::RowMatrix<T>::Zero(x.rows(), 1);
+  solve::RowMatrix<double> sums;
+  rows_.residual(none, x, &sums);
+  return sums.col(0);
+}
+
 #define TITOP_INSTANTIATE(T)                                                                  \
   template solve::RowMatrix<T> Evaluation<T>::rounding() const;                               \
   template solve::RowMatrix<T> Evaluation<T>::rounding_of_values(std::span<const int>) const; \
   template double Evaluation<T>::relative_to_results(const solve::RowMatrix<T>&) const;       \
   template Eigen::ArrayXd Evaluation<T>::sizes_of_unknowns(                                   \
-      const solve::RowMatrix<std::complex<double>>&) const;
+      const solve::RowMatrix<std::complex<double>>&) const;                                   \
+  template Eigen::VectorXd Evaluation<T>::unit_sizes() const;                                 \
+  template Eigen::VectorXd Evaluation<T>::sums_of(const Eigen::VectorXd&) const;
 TITOP_INSTANTIATE(double)
 TITOP_COMPLEX_SCALARS(TITOP_INSTANTIATE)
 #undef TITOP_INSTANTIATE

@@ -22,6 +22,8 @@ constexpr int kSteps = 30;
 /// otherwise a later step must confirm it, up to kUntil after the first.
 constexpr double kPlain = 1e-9;
 constexpr int kUntil = 2;
+/// RefinedSolution::holds.
+constexpr double kSmallTerms = 1000;
 
 bool at_most(const Eigen::ArrayXd& change, const Eigen::ArrayXd& limit) {
   return (change <= limit.max(kUnderflow)).all();
@@ -64,6 +66,29 @@ typename RefinedSolution<T>::Losses RefinedSolution<T>::losses() {
 }
 
 template <class T>
+bool RefinedSolution<T>::hold_to(double epsilon) const {
+  solve::RowMatrix<double> terms;
+  const solve::RowMatrix<T> off = residual(&terms);
+  const double rounding = backward_error_of_rounding(epsilon);
+  if (backward_error(off, terms) <= rounding) return true;
+  const Eigen::VectorXd unit = unit_sizes(), sums = sums_of(unit);
+  const double small = kSmallTerms * static_cast<double>(off.rows()) * epsilon;
+  for (Eigen::Index j = 0; j < off.cols(); ++j) {
+    double largest = 0;
+    for (Eigen::Index i = 0; i < unit.size(); ++i)
+      largest = std::max(largest, solve::size_of(unknowns_(i, j)) / unit(i));
+    for (Eigen::Index i = 0; i < off.rows(); ++i)
+      if (const double most = sums(i) * largest; terms(i, j) <= small * most) terms(i, j) += most;
+  }
+  return backward_error(off, terms) <= rounding;
+}
+
+template <class T>
+bool RefinedSolution<T>::holds() const {
+  return hold_to(solve::Scalar<T>::epsilon());
+}
+
+template <class T>
 solve::RowMatrix<T> RefinedSolution<T>::change_by_rounding() const {
   solve::RowMatrix<double> magnitudes;
   residual(&magnitudes);
@@ -92,7 +117,7 @@ solve::RowMatrix<std::complex<double>> RefinedSolution<T>::change_by(
 /// not imply a small error. Convergence is judged by each of the unknowns, not by the results, of
 /// which that component may be a small fraction.
 template <class T>
-void RefinedSolution<T>::refine(const RefinedSolution<Double>& coarse) {
+void RefinedSolution<T>::refine_until_settled(const RefinedSolution<Double>& coarse) {
   unknowns_ = lifted<T>(coarse.unknowns());
   const Eigen::ArrayXd start = sizes_of_unknowns(coarse.unknowns());  // the step from 0
   Eigen::ArrayXd first_step;
@@ -122,6 +147,13 @@ void RefinedSolution<T>::refine(const RefinedSolution<Double>& coarse) {
     if (leads && (settled || (step > 0 && !(now <= kShrinks * before)))) return;
     before = now;
   }
+}
+
+template <class T>
+void RefinedSolution<T>::refine(const RefinedSolution<Double>& coarse) {
+  refine_until_settled(coarse);
+  if (refinement_error_ <= kEnough && !hold_to(solve::Scalar<double>::epsilon()))
+    refinement_error_ = 1;
 }
 
 template class RefinedSolution<double>;

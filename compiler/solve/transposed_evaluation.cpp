@@ -112,6 +112,21 @@ Eigen::ArrayXd TransposedEvaluation<T>::sizes_of_unknowns(
   return Eigen::Map<const Eigen::ArrayXd>(sizes.data(), std::ssize(sizes));
 }
 
+/// Those of the rows of the system itself, of which these unknowns are the weights.
+template <class T>
+Eigen::VectorXd TransposedEvaluation<T>::unit_sizes() const {
+  return point_.sums_of(point_.unit_sizes()).unaryExpr([](double x) { return x > 0 ? 1 / x : 1; });
+}
+
+template <class T>
+Eigen::VectorXd TransposedEvaluation<T>::sums_of(const Eigen::VectorXd& sizes) const {
+  const solve::RowMatrix<T> x = solve::lifted<T>(sizes),
+                            none = solve::RowMatrix<T>::Zero(x.rows(), 1);
+  solve::RowMatrix<double> sums;
+  point_.rows_.transposed_residual(none, x, &sums);
+  return sums.col(0);
+}
+
 #define TITOP_INSTANTIATE(T) template class TransposedEvaluation<T>;
 TITOP_COMPLEX_SCALARS(TITOP_INSTANTIATE)
 #undef TITOP_INSTANTIATE

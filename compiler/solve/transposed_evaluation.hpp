@@ -36,6 +36,16 @@ class TransposedEvaluation final : public RefinedSolution<T> {
     return point_.rows_.transposed_residual(rhs_, this->unknowns_, magnitudes);
   }
   double relative_to_results(const solve::RowMatrix<T>& change_of_unknowns) const override;
+  double backward_error(const solve::RowMatrix<T>& residual,
+                        const solve::RowMatrix<double>& magnitudes) const override {
+    return solve::transposed_backward_error(plan(), residual, magnitudes);
+  }
+  double backward_error_of_rounding(double epsilon) const override {
+    return solve::transposed_backward_error_of_rounding(plan(), epsilon);
+  }
+  Eigen::VectorXd unit_sizes() const override;
+  Eigen::VectorXd sums_of(const Eigen::VectorXd& sizes) const override;
+  const solve::Plan& plan() const { return *point_.data_.skeleton->as_written().plan; }
   Eigen::ArrayXd sizes_of_unknowns(
       const solve::RowMatrix<std::complex<double>>& unknowns) const override;
 

@@ -5,7 +5,8 @@ namespace titop {
 /// Arithmetic of a transfer, coarse to fine. All use the same elimination on the same plan; blocks
 /// are evaluated in it too, from data that are doubles.
 enum class Precision {
-  standard,  ///< double: 16 digits; one step of refinement after the elimination
+  standard,  ///< double: 16 digits; one step of refinement after the elimination; not as accurate
+             ///< as the others where the scene is ill-conditioned
   refined,   ///< factors in double, blocks and residuals in long double: refined until the outputs
              ///< settle, or refused; see System::transfer
   twofold,   ///< the same in double-double: 32 digits, on any machine

@@ -50,7 +50,8 @@ class System {
   const std::vector<std::string>& outputs() const&;
   std::vector<std::string> outputs() const&& { return outputs(); }
   /// Column of the transfer, and entry of u, of this scalar input: `system.input("ref(3)")`; row of
-  /// the transfer, and entry of y, of this scalar output. Throw unknown_name with the valid names.
+  /// the transfer, and entry of y, of this scalar output. Throw unknown_name with the first of
+  /// the valid names. O(names).
   int input(const std::string& name) const;
   int output(const std::string& name) const;
 
@@ -70,8 +71,14 @@ class System {
   /// no digit for some unknown, or if the rounding of long double is too large, refinement fails.
   /// Both are estimates: the convergence of the refinement steps in all unknowns, and the rounding.
   /// If numbers exceed the range of DoubleDouble, `twofold` throws not_finite. In all these cases
-  /// use `as_needed` or `digits50`. `standard` detects only a completely lost pivot, not the
-  /// accumulated loss of many pivots.
+  /// use `as_needed` or `digits50`.
+  ///
+  /// In every precision the final unknowns must solve the equations to the rounding of their terms
+  /// (of double for `refined` and `twofold`), as the exact solution for data changed in their last
+  /// digits does (RefinedSolution::holds in compiler/solve). Otherwise `as_needed` takes finer
+  /// arithmetic, and the others throw singular. `standard` is so the transfer of a system within
+  /// rounding of this one: it loses the digits that the scene's conditioning costs, `as_needed`
+  /// does not.
   Eigen::MatrixXcd transfer(std::complex<double> s,
                             Precision precision = Precision::as_needed) const;
 

@@ -56,6 +56,8 @@ class Answer {
     const auto t = transposed_->losses();
     return {worse(f.change, t.change), worse(f.rounding, t.rounding)};
   }
+  /// Whether the final unknowns solve the equations.
+  bool holds() const { return forward_.holds() && (!transposed_ || transposed_->holds()); }
   double refinement_error() const {
     const double error = forward_.refinement_error();
     return transposed_ ? worse(error, transposed_->refinement_error()) : error;
@@ -81,15 +83,27 @@ class Answer {
   std::optional<TransposedEvaluation<T>> transposed_;
 };
 
+bool is_finite(const TransferPart& part) {
+  return part.columns.allFinite() && part.rows.allFinite();
+}
+
+/// The law of every precision: an answer is given only if its final unknowns solve the equations.
+/// (Overflow is refused by the caller.)
 template <class T>
-TransferPart in_precision(const TransferRequest& r, solve::Refinement refinement) {
-  return Answer<T>(r, refinement).rounded();
+TransferPart judged(const TransferRequest& r, const Answer<T>& answer) {
+  TransferPart part = answer.rounded();
+  if (is_finite(part) && !answer.holds()) throw not_refined(r.data, r.s, 1);
+  return part;
 }
 
 TransferPart standard(const TransferRequest& r) {
   Answer<Double> point(r, solve::Refinement::none);
   point.improve();
-  return point.rounded();
+  return judged(r, point);
+}
+
+TransferPart digits50(const TransferRequest& r) {
+  return judged(r, Answer<solve::Complex50>(r, solve::Refinement::settled));
 }
 
 template <class T>
@@ -103,13 +117,14 @@ TransferPart refined(const TransferRequest& r) {
 
 /// Relative error in T after one step of refinement, whose change was `losses`: the largest of
 /// those by the weakest pivot, by rounding of the results, and by the remainder after that step,
-/// which takes another step to compute.
+/// which takes another step to compute; 1 if the final unknowns do not solve the equations.
 template <class T>
 double lost_by(Answer<T>& e, const typename RefinedSolution<T>::Losses& losses) {
   const double left = losses.change <= kEnough ? 0 : e.improve();
   if (std::isnan(left) || std::isnan(losses.rounding)) return HUGE_VAL;
-  return std::max(
+  const double lost = std::max(
       {solve::Scalar<T>::epsilon() / e.weakest_pivot(), kRoundings * losses.rounding, left});
+  return lost <= kEnough && !e.holds() ? 1 : lost;
 }
 
 /// Finer than double, whose error is `lost`: refined if its own rounding (2000 times finer) is
@@ -122,7 +137,7 @@ TransferPart finer(const TransferRequest& r, const Answer<Double>& plain, double
   }
   const Answer<Twofold> twice(r, plain);
   if (twice.refinement_error() <= kEnough) return twice.rounded();
-  return in_precision<solve::Complex50>(r, solve::Refinement::settled);
+  return digits50(r);
 }
 
 /// In T, if double has no pivot; none if T has too few digits for it, or if the last place
@@ -164,7 +179,7 @@ TransferPart with(const TransferRequest& r, Precision precision) {
     case Precision::standard: return standard(r);
     case Precision::refined: return refined<Extended>(r);
     case Precision::twofold: return refined<Twofold>(r);
-    case Precision::digits50: return in_precision<solve::Complex50>(r, solve::Refinement::settled);
+    case Precision::digits50: return digits50(r);
     case Precision::as_needed: return as_needed(r);
   }
   return {};
@@ -177,10 +192,9 @@ TransferPart transfer_part(const SystemData& data, Double s, const PartOfTransfe
   TransferCost cost;
   TransferPart result = with({data, s, part, cost}, precision);
   result.cost = cost;
-  for (const Eigen::MatrixXcd* m : {&result.columns, &result.rows})
-    if (!m->allFinite())
-      refuse_overflow(
-          fmt::format("the transfer of {} at s = {}{:+}j", data.graph().name, s.real(), s.imag()));
+  if (!is_finite(result))
+    refuse_overflow(
+        fmt::format("the transfer of {} at s = {}{:+}j", data.graph().name, s.real(), s.imag()));
   return result;
 }
 
@@ -200,7 +214,7 @@ std::optional<Eigen::MatrixXcd> transfer_if_any(const SystemData& data, Double s
 Eigen::MatrixXcd in_long_double(const SystemData& data, Double s) {
   TransferCost cost;
   const PartOfTransfer all{all_inputs(data), {}};
-  return in_precision<Extended>({data, s, all, cost}, solve::Refinement::none).columns;
+  return Answer<Extended>({data, s, all, cost}, solve::Refinement::none).rounded().columns;
 }
 
 }  // namespace titop::detail

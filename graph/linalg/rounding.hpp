@@ -31,7 +31,7 @@ inline constexpr double kMatrixDigits = 1e-9;
 /// the largest, is 0.
 inline constexpr double kTextDigits = 1e-6;
 /// Times one sample of rounding, which may be small by chance: a smaller number may be rounding
-/// alone. Measured: up to 6 for true zeros, 1e5 and more for others.
+/// alone.
 inline constexpr double kNoise = 1e3;
 /// A number is larger than another beyond rounding: otherwise the first in the graph is taken, so
 /// that a choice does not depend on the last bits.
