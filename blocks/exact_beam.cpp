@@ -172,7 +172,8 @@ class ExactBeamBlock : public Block,
   Cause no_state_space() const override {
     return {"has infinitely many modes (ExactBeam), and no finite state space",
             "transfer and frequency_response take it; otherwise put FlexibleBody{with_elements("
-            "beam, n)} in its place: compare(finite, exact, scene) tells the error"};
+            "beam, n)} in its place (compare(finite, exact, scene) tells the error), or let "
+            "reduce_beams(diagram, scene) choose"};
   }
 
  private:

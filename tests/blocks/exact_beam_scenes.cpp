@@ -82,6 +82,7 @@ TEST_CASE("a scene's transfers in every precision, against all its equations at 
     CHECK(titop_test::matrix_error(system.transfer(s, Precision::twofold), exact) <= 1e-12);
     CHECK(titop_test::matrix_error(transfer(d.graph(), s), exact) <= 1e-9);
   }
+  CHECK(system.frequency_response(std::vector{2.0, 90.0})[1] == system.transfer({0, 90}));
   CHECK(system.certificate().residual >= 0);
   CHECK(system.certificate().residual <= 1e-12);
   CHECK(system.certificate().apply_against_transfer < 0);

@@ -75,6 +75,15 @@ TEST_CASE("plate held along a quarter of an edge: rigid above, average below") {
   const VectorXd average = omegas(fe::with_interface(mesh, "P", fe::average(quarter)), "P", 2);
   CHECK(std::abs(average(0) - 2.6007) <= 6e-5);
   CHECK(std::abs(average(1) - 4.8568) <= 6e-5);
+  // 16 x 16: both sides fall towards the limit between them.
+  const fe::Mesh fine = plate_mesh(unit_plate({16, 16}));
+  const fe::NodeSet five = fe::segment(fine, "x0", 0.375, 0.625);
+  const VectorXd above = omegas(fe::with_interface(fine, "P", fe::rigid(five)), "P", 2),
+                 under = omegas(fe::with_interface(fine, "P", fe::average(five)), "P", 2);
+  CHECK(std::abs(above(0) - 2.70568) <= 1e-5);
+  CHECK(std::abs(above(1) - 5.80847) <= 1e-5);
+  CHECK(std::abs(under(0) - 2.54040) <= 1e-5);
+  CHECK(std::abs(under(1) - 4.69050) <= 1e-5);
 }
 
 TEST_CASE("a whole edge that is rigid is the clamped edge") {

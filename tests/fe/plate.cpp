@@ -125,18 +125,33 @@ TEST_CASE("simply supported orthotropic rectangle against its closed form") {
 TEST_CASE("clamped, free and supported plates: published frequencies, and this mesh elsewhere") {
   // Barton 1951 (up to 0.7 % high; code_aster SDLS01), Leissa 1973.
   const VectorXd cantilever = omegas(plate_mesh(unit_plate(8)), clamped_at_x0);
-  check_omegas(cantilever, 0, {3.492, 8.525, 21.43, 27.33, 31.11}, 0.011);
-  const VectorXd coarse = omegas(plate_mesh(unit_plate(4)), clamped_at_x0);
-  // The same elements in another program, which prints 5 decimals.
-  check_omegas(coarse, 0, {3.47505, 8.51764, 21.32515}, 1.5e-6);
-  check_omegas(cantilever, 0, {3.47201, 8.50957, 21.29249}, 1.5e-6);
-  check_omegas(omegas(plate_mesh(unit_plate(8)), free_plate), 3,
-               {13.49, 19.79, 24.43, 35.02, 35.02}, 0.011);
-  check_omegas(omegas(plate_mesh(unit_plate(8)), clamped), 0, {35.99, 73.41, 73.41, 108.27}, 2e-3);
-  check_omegas(omegas(plate_mesh(unit_plate(8)), supported(1, 1, false)), 0,
-               {9.631, 16.135, 36.726, 38.945, 46.738, 70.740}, 1e-3);
-  check_omegas(omegas(plate_mesh(unit_plate(8, 2, 1)), clamped_at_x0), 0,
-               {3.440 / 4, 14.805 / 4, 21.438 / 4, 48.19 / 4}, 2e-3);
+  check_omegas(cantilever, 0, {3.492, 8.525, 21.43, 27.33, 31.11, 54.44}, 0.011);
+  const VectorXd free = omegas(plate_mesh(unit_plate(8)), free_plate),
+                 all_round = omegas(plate_mesh(unit_plate(8)), clamped),
+                 two_sides = omegas(plate_mesh(unit_plate(8)), supported(1, 1, false)),
+                 long_one = omegas(plate_mesh(unit_plate(8, 2, 1)), clamped_at_x0);
+  check_omegas(free, 3, {13.49, 19.79, 24.43, 35.02, 35.02}, 0.011);
+  check_omegas(all_round, 0, {35.99, 73.41, 73.41, 108.27}, 2e-3);
+  check_omegas(two_sides, 0, {9.631, 16.135, 36.726, 38.945, 46.738, 70.740}, 1e-3);
+  check_omegas(long_one, 0, {3.440 / 4, 14.805 / 4, 21.438 / 4, 48.19 / 4}, 2e-3);
+  // The same elements in another program, 8 x 8.
+  check_omegas(cantilever, 0,
+               {3.472008941, 8.509565508, 21.292492263, 27.203690400, 30.969963637, 54.218273763},
+               1e-8);
+  check_omegas(free, 3,
+               {13.468852819, 19.597432287, 24.272800466, 34.807549633, 34.807549633, 61.130558339},
+               1e-8);
+  check_omegas(omegas(plate_mesh(unit_plate(8)), supported(1, 1, true)), 0,
+               {19.739372260, 49.356313710, 49.356313710, 78.967371753, 98.799596604}, 1e-8);
+  check_omegas(
+      all_round, 0,
+      {35.990832665, 73.438771603, 73.438771603, 108.308512984, 131.873854626, 132.491849148},
+      1e-8);
+  check_omegas(two_sides, 0,
+               {9.631565956, 16.135180710, 36.730344720, 38.955823176, 46.749395967, 70.760963183},
+               1e-8);
+  check_omegas(long_one, 0, {3.441305190 / 4, 14.808197562 / 4, 21.444436065 / 4, 48.203981808 / 4},
+               1e-8);
 }
 
 TEST_CASE("NAFEMS FV12 and FV16: a square of 10 m, free and cantilevered, in Hz") {
@@ -212,14 +227,16 @@ TEST_CASE("mass, rigid motions, and rigid in its plane") {
 }
 
 TEST_CASE("held at one node, a plate's frequencies fall with every mesh") {
-  // The same elements in another program: 4 x 4 and 8 x 8, with 4 decimals.
+  // The same elements in another program: 4 x 4 and 8 x 8 with 4 decimals, 16 x 16 with 6.
   const auto first = [](int elements, const std::string& node) {
     return fe::modal_data(plate_mesh(unit_plate(elements)), node, {}, {.kept = 3}).omega;
   };
   check_omegas(first(4, "2,2"), 0, {7.8897, 7.8897}, 1e-5);
   check_omegas(first(8, "4,4"), 0, {6.9612, 6.9612}, 1e-5);
+  check_omegas(first(16, "8,8"), 0, {6.297479, 6.297479}, 1e-6);
   check_omegas(first(4, "0,2"), 0, {2.2162, 3.4535}, 3e-5);
   check_omegas(first(8, "0,4"), 0, {1.9509, 3.1700}, 3e-5);
+  check_omegas(first(16, "0,8"), 0, {1.756809, 2.945442}, 1e-6);
 }
 
 TEST_CASE("plates that cannot be are refused, all mistakes at once") {

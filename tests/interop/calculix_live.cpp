@@ -61,6 +61,61 @@ TEST_CASE("matrices of a live CalculiX run are those of the stored files") {
   CHECK((live.M - kept.M).cwiseAbs().maxCoeff() <= 1e-12 * kept.M.cwiseAbs().maxCoeff());
 }
 
+namespace {
+
+/// The deck without the rigid body of the end face, whose eight nodes stay free.
+fs::path run_open_end() {
+  const fs::path folder = fs::temp_directory_path() / "titop-interop-open-end";
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  std::ifstream deck(fs::path(TITOP_DATA_DIR) / "calculix_beam" / "beam_free_mat.inp");
+  std::ofstream open(folder / "open.inp");
+  int references = 0;
+  bool rest = false;
+  for (std::string line; std::getline(deck, line);) {
+    references += line == "*NODE,NSET=NREF";
+    rest = rest || line == "*STEP";
+    if (references < 2 || rest) open << line << '\n';
+  }
+  open.close();
+  REQUIRE(std::system(("cd '" + folder.string() + "' && ccx open >ccx.log 2>&1").c_str()) == 0);
+  return folder / "open";
+}
+
+/// Displacement of C by a unit force or torque there, P held.
+double compliance(const ModalData& beam, Eigen::Index axis) {
+  return (beam.children.front().Phi_C.row(axis).array().square() /
+          beam.omega.transpose().array().square())
+      .sum();
+}
+
+}  // namespace
+
+TEST_CASE("an interface of the end face is the rigid body that CalculiX makes of it") {
+  if (!installed()) return titop_test::skip("CalculiX (ccx) is not installed");
+  const fe::Mesh open = fe::read_calculix(fe::calculix_files(run_open_end()), {{"P", 900001}});
+  const fe::NodeSet face = fe::box(open, {1, -1, -1}, {1, 1, 1});
+  REQUIRE(face.points.size() == 8);
+  const ModalData of_file = fe::modal_data(
+      read(fs::path(TITOP_DATA_DIR) / "calculix_beam" / "beam_free_mat"), "P", {"C"});
+  const auto with = [&](const fe::Coupling& coupling) {
+    return fe::modal_data(fe::with_interface(open, "C", coupling), "P", {"C"});
+  };
+  const ModalData rigid = with(fe::rigid(face)), average = with(fe::average(face));
+  for (Eigen::Index k = 0; k < 20; ++k) {
+    CAPTURE(k);
+    CHECK(std::abs(rigid.omega(k) / of_file.omega(k) - 1) <= 1e-8);
+    CHECK(average.omega(k) <= of_file.omega(k) * (1 + 1e-8));
+  }
+  // A face that may warp yields more along the beam, and no less in any other direction.
+  for (Eigen::Index axis = 0; axis < 6; ++axis) {
+    CAPTURE(axis);
+    const double exact = compliance(of_file, axis);
+    CHECK(std::abs(compliance(rigid, axis) / exact - 1) <= 1e-7);
+    CHECK(compliance(average, axis) >= exact * (1 - 1e-7));
+  }
+}
+
 TEST_CASE("clamped-free frequencies of a scene are those that CalculiX computes itself") {
   if (!installed()) return titop_test::skip("CalculiX (ccx) is not installed");
   const std::vector<double> printed = printed_omegas(run_deck("beam_cf") / "beam_cf.dat");
