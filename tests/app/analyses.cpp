@@ -151,6 +151,9 @@ TEST_CASE("margins: of K / (s (s + 1)^2), whose gain margin is 2 / K at 1 rad/s"
   r = shell.titop("margins loop.json --set K=3");
   CHECK(r.code == 3);
   CHECK(!has(r.out, "dB"));
+  // |L| = 1 at 0.6823 rad/s, 21.39 degrees ahead of -1, which a delay of 0.5471 s takes.
+  CHECK(shell.titop("margins loop.json --delay 0.54").code == 0);
+  CHECK(shell.titop("margins loop.json --delay 0.55").code == 3);
   r = shell.titop("margins mass.json");
   CHECK(r.code == 1);
   CHECK(has_names(r.err, {"unknown-name", "mass.json", "LoopPoint"}));
@@ -167,6 +170,9 @@ TEST_CASE("reduce: the model, its bound and generated code") {
                    .state_space(),
                shell.folder.path / "expected" / "small.m");
   CHECK(shell.folder.read("small.m") == shell.folder.read("expected/small.m"));
+  r = shell.titop("reduce mass.json small.m --band 0 2 --accuracy 1e-6");
+  CHECK(r.out == to_string(compile(read_diagram(shell.folder.path / "mass.json"),
+                                   Scene{.band_hz = {0, 2}, .accuracy = 1e-6})));
   r = shell.titop(
       "reduce mass.json small.hpp --band 0 2 --inputs u --outputs x --sample-time 0.01");
   CHECK(r.code == 0);

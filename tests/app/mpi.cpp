@@ -5,6 +5,7 @@
 #include <titop/titop.hpp>
 
 #include "app/shell.hpp"
+#include "support/skip.hpp"
 
 using namespace titop;
 using app_test::has;
@@ -19,9 +20,10 @@ std::string run_by(int processes) {
          "'" TITOP_MPIRUN "' --oversubscribe -n " +
          std::to_string(processes);
 }
+constexpr bool kHasMpi = true;
 #else
-/// Built without TITOP_MPI: one process.
 std::string run_by(int) { return {}; }
+constexpr bool kHasMpi = false;
 #endif
 
 class Shell : public app_test::Shell {
@@ -48,6 +50,7 @@ class Shell : public app_test::Shell {
 }  // namespace
 
 TEST_CASE("sweep over the processes of mpirun: the same file as of one process") {
+  if (!kHasMpi) return titop_test::skip("the program is built without TITOP_MPI");
   const Shell shell;
   std::string points = "k\n";
   for (int i = 1; i <= 7; ++i) points += std::to_string(3 * i) + "\n";
@@ -64,6 +67,7 @@ TEST_CASE("sweep over the processes of mpirun: the same file as of one process")
 }
 
 TEST_CASE("sweep over the processes of mpirun: a refused row, and a wrong file, once each") {
+  if (!kHasMpi) return titop_test::skip("the program is built without TITOP_MPI");
   const Shell shell;
   // 2 rad/s is the pole of k = 8, in the second half.
   shell.folder.write("points.csv", "k\n18\n32\n50\n8\n");

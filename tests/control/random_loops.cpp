@@ -3,7 +3,7 @@
 #include "control/grid_margins.hpp"
 
 /// Margins of random single loops against a fine grid of their factors: poles near the axis
-/// (damping ratios down to 1e-6), unstable plants.
+/// (damping ratios down to 1e-6), unstable plants, delays.
 
 using namespace titop;
 using namespace titop_test;
@@ -40,4 +40,35 @@ TEST_CASE("170 random single loops") {
   CHECK(largest <= 1e-6);
   CHECK(open_unstable >= 20);
   CHECK(refused >= 10);
+}
+
+TEST_CASE("40 random single loops with half of their delay margin as a delay") {
+  Rng rng(72);
+  int done = 0;
+  double largest = 0;
+  while (done < 40) {
+    const auto parts = random_parts(rng, rng.chance(0.3), false, std::pow(10, rng.between(-1, 1)));
+    const StateSpace L = model_of(parts);
+    const auto list = grid(parts);
+    const auto without = [&](Real w) {
+      Complex sum = 0;
+      for (const Fraction& p : parts) sum += p.at(w);
+      return sum;
+    };
+    if (unstable(L) > 0) continue;
+    const Expected now = expected(without, list, without(0));
+    // The grid's points are 1 % apart: beyond 30 rad/s L has no mode, and the delay turns it fast.
+    const Real delay = now.delay / 2;
+    if (!(delay * 30 <= 20)) continue;
+    const Margins m = margins(L, {.delay = static_cast<double>(delay)});
+    const Expected left = expected(
+        [&](Real w) { return without(w) * std::exp(Complex(0, -w * delay)); }, list, without(0));
+    CHECK(m.stable);  // delays below the least that brings L to -1
+    CHECK(off(m.loops[0].delay.value, now.delay - delay) <= 1e-6);
+    const double error = worst(m.loops[0], left);
+    if (error > 1e-6) MESSAGE(done, ": ", error, "\n", to_string(m));
+    largest = std::max(largest, error);
+    ++done;
+  }
+  CHECK(largest <= 1e-6);
 }
