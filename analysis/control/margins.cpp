@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <numbers>
@@ -38,6 +39,14 @@ Distances by_norms(const StateSpace& L) {
           disk.value > 1 ? DiskMargin{2 / disk.value, disk.omega} : DiskMargin{2, HUGE_VAL}};
 }
 
+/// The list without points that are equal to half the digits of the last, as crossings that are
+/// found twice: between these, rounding would decide on which side a minimum is looked for.
+std::vector<double> apart(std::vector<double> list) {
+  const auto close = [](double a, double b) { return b - a <= linalg::kHalfDigits * b; };
+  list.erase(std::unique(list.begin(), list.end(), close), list.end());
+  return list;
+}
+
 /// The least f(omega) over the list and between its neighbours.
 template <class F>
 MarginAt least(const F& f, const std::vector<double>& list) {
@@ -63,7 +72,7 @@ Distances on_grid(const StateSpace& L, const LoopResponse& response,
   roots.insert(roots.end(), zeros.begin(), zeros.end());
   for (const LoopCrossing& c : unit) roots.emplace_back(0, c.omega);
   const std::vector<double> list =
-      detail::structured(roots, 8 * response.delay(), detail::end_of_turns(response, roots));
+      apart(detail::structured(roots, 8 * response.delay(), detail::end_of_turns(response, roots)));
   const auto distance = [&](double w) { return std::abs(1.0 + response.at(w)); };
   const MarginAt nearest =
       least([&](double w) { return std::isfinite(distance(w)) ? distance(w) : HUGE_VAL; }, list);
