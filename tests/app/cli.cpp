@@ -11,25 +11,14 @@
 #include <titop/blocks/diagram_file/diagram_file.hpp>
 #include <titop/titop.hpp>
 
-#include "app/shell.hpp"
-#include "support/five_masses.hpp"
+#include "app/masses_shell.hpp"
 #include "support/names.hpp"
 
 using namespace titop;
 using namespace titop_test;
 using app_test::has;
 using app_test::Run;
-
-namespace {
-
-/// With the five masses in it.
-class Shell : public app_test::Shell {
- public:
-  Shell() { write_diagram(diagram(), folder.path / "masses.json"); }
-  static Diagram diagram() { return five_masses_scene({1, 2, 3, 4, 5}, {10, 26, 33, 20, 95}); }
-};
-
-}  // namespace
+using Shell = app_test::MassesShell;
 
 TEST_CASE("check and compile print counts and findings") {
   const Shell shell;

@@ -7,27 +7,14 @@
 #include <sstream>
 #include <titop/titop.hpp>
 
-#include "app/shell.hpp"
-#include "support/five_masses.hpp"
+#include "app/masses_shell.hpp"
 #include "support/names.hpp"
 
 using namespace titop;
 using namespace titop_test;
 using app_test::has;
 using app_test::Run;
-
-namespace {
-
-/// With the five masses in it.
-class Shell : public app_test::Shell {
- public:
-  Shell() {
-    write_diagram(five_masses_scene({1, 2, 3, 4, 5}, {10, 26, 33, 20, 95}),
-                  folder.path / "masses.json");
-  }
-};
-
-}  // namespace
+using Shell = app_test::MassesShell;
 
 TEST_CASE("--help prints the usage on stdout") {
   const Shell shell;
