@@ -7,8 +7,8 @@
 namespace titop::detail {
 
 /// Of a step: rounding of times that users type or add up.
-constexpr double kOfStep = 1e-9;
-constexpr double kMostSteps = 1e9;
+inline constexpr double kOfStep = 1e-9;
+inline constexpr double kMostSteps = 1e9;
 
 /// time / step, not negative, if that is a whole number; 0 is one.
 inline std::optional<double> whole_steps(double time, double step) {

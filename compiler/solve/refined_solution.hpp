@@ -50,7 +50,8 @@ class RefinedSolution {
   /// unknowns, to the rounding of those: between unknowns that are 0 up to rounding, as at a pinned
   /// point, terms are rounding themselves [M. Arioli, J. W. Demmel, I. S. Duff, Solving sparse
   /// linear systems with sparse backward error, 1989]. Unknowns are compared in the sizes that
-  /// equilibrate the equations. No solution: the rows once or twice.
+  /// equilibrate the equations. Cost: the rows once per column, and once more if an equation does
+  /// not hold to the rounding of its own terms; no solution.
   bool holds() const;
 
  protected:
