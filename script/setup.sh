@@ -54,7 +54,8 @@ build() {
   shift
   (($# == 0)) || targets=(--target "$@")
   logged "build/$preset-configure.log" cmake --preset "$preset" -DTITOP_CI="${TITOP_CI:-OFF}" \
-    ${TITOP_WERROR:+"-DTITOP_WERROR=$TITOP_WERROR"} ${TITOP_PYTHON:+"-DTITOP_PYTHON=$TITOP_PYTHON"}
+    ${TITOP_WERROR:+"-DTITOP_WERROR=$TITOP_WERROR"} ${TITOP_PYTHON:+"-DTITOP_PYTHON=$TITOP_PYTHON"} \
+    ${TITOP_MPI:+"-DTITOP_MPI=$TITOP_MPI"}
   local ninja=(cmake --build --preset "$preset" -j "${JOBS:-$(nproc)}" "${targets[@]}" -- -k 0)
   if [[ -t 1 ]]; then
     "${ninja[@]}"

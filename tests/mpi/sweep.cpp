@@ -5,7 +5,6 @@
 #include <titop/titop.hpp>
 
 #include "app/shell.hpp"
-#include "support/skip.hpp"
 
 using namespace titop;
 using app_test::has;
@@ -13,18 +12,12 @@ using app_test::Run;
 
 namespace {
 
-#ifdef TITOP_MPIRUN
 /// Test machines run as root, with fewer cores than processes; MPI itself leaks at its end.
 std::string run_by(int processes) {
   return "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 ASAN_OPTIONS=detect_leaks=0 "
          "'" TITOP_MPIRUN "' --oversubscribe -n " +
          std::to_string(processes);
 }
-constexpr bool kHasMpi = true;
-#else
-std::string run_by(int) { return {}; }
-constexpr bool kHasMpi = false;
-#endif
 
 class Shell : public app_test::Shell {
  public:
@@ -50,7 +43,6 @@ class Shell : public app_test::Shell {
 }  // namespace
 
 TEST_CASE("sweep over the processes of mpirun: the same file as of one process") {
-  if (!kHasMpi) return titop_test::skip("the program is built without TITOP_MPI");
   const Shell shell;
   std::string points = "k\n";
   for (int i = 1; i <= 7; ++i) points += std::to_string(3 * i) + "\n";
@@ -67,7 +59,6 @@ TEST_CASE("sweep over the processes of mpirun: the same file as of one process")
 }
 
 TEST_CASE("sweep over the processes of mpirun: a refused row, and a wrong file, once each") {
-  if (!kHasMpi) return titop_test::skip("the program is built without TITOP_MPI");
   const Shell shell;
   // 2 rad/s is the pole of k = 8, in the second half.
   shell.folder.write("points.csv", "k\n18\n32\n50\n8\n");
