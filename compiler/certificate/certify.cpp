@@ -11,6 +11,7 @@
 #include <titop/compiler/solve/margins.hpp>
 #include <titop/compiler/solve/weak_pivot.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::detail {
 namespace {
@@ -19,7 +20,7 @@ using linalg::at;
 
 /// "about 2 digits are": the digits of a loop at this distance from singular.
 std::string digits_at(double distance) {
-  const double digits = std::max(0.0, std::round(std::log10(distance / 1.1e-16)));
+  const double digits = std::max(0.0, std::round(std::log10(2 * distance / linalg::kEpsilon)));
   return digits == 1 ? "about one digit is" : fmt::format("about {:.0f} digits are", digits);
 }
 

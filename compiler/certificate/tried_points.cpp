@@ -14,6 +14,8 @@ using Eigen::MatrixXd;
 using linalg::at;
 using Complex = std::complex<double>;
 
+constexpr double kFarBelow = 1e-2;  ///< two decades, without a mode between
+
 /// Powers of s by which outputs decrease per decade; true if all are integers and equal to those
 /// before: below all modes with an effect.
 bool whole_powers(const MatrixXd& here, const MatrixXd& below, MatrixXd& powers) {
@@ -72,19 +74,19 @@ Tried tried(const Factored& d, const MatrixXd& A, const solve::RowMatrix<Complex
             const std::vector<int>& units) {
   const Complex s = pick_s(d);
   if (A.size() == 0) return {{s}};  // the outputs do not depend on s
-  Tried result{{1e-4 * s, 1e-2 * s, s, 1e2 * s}};
+  Tried result{{kFarBelow * kFarBelow * s, kFarBelow * s, s, s / kFarBelow}};
   add_frequencies(A, result.s);
   double slowest = std::abs(s);
   for (const int i : d.layout().state_nodes)
     if (const double w = frequency_of(d.numbers.blocks[at(i)]->A); w > 0)
       slowest = std::min(slowest, w);
   const Complex of_blocks = slowest / std::abs(s) * s;
-  if (slowest < 1e-2 * std::abs(s)) result.s.push_back(1e-2 * of_blocks);
+  if (slowest < kFarBelow * std::abs(s)) result.s.push_back(kFarBelow * of_blocks);
   const std::optional<Complex> shown = slowest_shown(d, of_blocks, u, units);
   if (!shown) return result;
   result.slowest = std::abs(*shown);
   if (result.slowest < 0.5 * std::abs(s)) result.s.push_back(*shown);
-  if (result.slowest < 2e-2 * std::abs(s)) result.s.push_back(1e-2 * *shown);
+  if (result.slowest < 2 * kFarBelow * std::abs(s)) result.s.push_back(kFarBelow * *shown);
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include <titop/compiler/solve/blame.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::solve {
 namespace {
@@ -25,7 +26,7 @@ bool has_direct(const Graph& g, const Channel& c, const Dynamics& m) {
       .any();
 }
 
-/// Rank of the channel's own direct term after scaling its rows and columns, at 1e-12.
+/// Rank of the channel's own direct term after scaling its rows and columns.
 int direct_rank(const Graph& g, const Channel& c, const Dynamics& m) {
   const Signal& gives = g.signals[at(c.takes == Takes::force ? c.accel : c.force)];
   const Signal& takes = g.signals[at(c.takes == Takes::force ? c.force : c.accel)];
@@ -36,7 +37,7 @@ int direct_rank(const Graph& g, const Channel& c, const Dynamics& m) {
     for (Eigen::Index j = 0; j < D.cols(); ++j)
       D(i, j) = size(i) > 0 && size(j) > 0 ? D(i, j) / (size(i) * size(j)) : 0;
   Eigen::FullPivLU<Eigen::MatrixXd> lu(D);
-  lu.setThreshold(1e-12);
+  lu.setThreshold(linalg::kAxisRounding);
   return static_cast<int>(lu.rank());
 }
 

@@ -13,6 +13,8 @@ constexpr double kCancelled = 1e-11;
 /// Possible rounding of a 0, relative to the sizes around it: some hundred units of the last place,
 /// since it comes from sums over a front.
 constexpr double kLeftOfZero = 1e-13;
+/// A sum above this share of its terms has lost ordinary digits only.
+constexpr double kOrdinary = 1e-4;
 
 /// Sums of numbers that may cancel, each with the size of its terms.
 struct CancellingSum {
@@ -27,7 +29,7 @@ struct CancellingSum {
 /// ordinary losses do not accumulate along a long chain.
 inline CancellingSum settled(const CancellingSum& k) {
   const double value = k.cleaned();
-  return {value, std::abs(value) > 1e-4 * k.size ? std::abs(value) : k.size};
+  return {value, std::abs(value) > kOrdinary * k.size ? std::abs(value) : k.size};
 }
 
 /// Places and values of nonzero entries, ascending.

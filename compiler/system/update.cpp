@@ -237,7 +237,8 @@ bool has_moved(double value, double scaled_at) {
 /// True if pivots have lost half the digits that they had when the scaling was found, in any number
 /// of updates, or have none.
 bool outgrown(const solve::Health& now, const solve::Health& scaled) {
-  return now.singular || now.weakest < 1e-8 * scaled.weakest || now.growth > 1e8 * scaled.growth;
+  return now.singular || now.weakest < linalg::kHalfDigits * scaled.weakest ||
+         linalg::kHalfDigits * now.growth > scaled.growth;
 }
 
 /// The factors for the new values, scaled anew if need be.
