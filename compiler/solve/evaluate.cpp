@@ -54,17 +54,6 @@ Error no_digit_left(const Factored& data, std::complex<double> s) {
           "evaluate at another s, or with Precision::digits50"};
 }
 
-Error not_refined(const Factored& data, std::complex<double> s, double error) {
-  const std::string place =
-      fmt::format("{} at s = {}{:+}j: ", data.graph().name, s.real(), s.imag());
-  if (std::isinf(error))
-    return {Code::not_finite, place + "numbers exceed the range of this precision",
-            "take Precision::digits50, an s of smaller or larger modulus, or other units"};
-  return {Code::singular,
-          place + "refinement does not reach 12 digits: the factors of this precision have too few",
-          "take Precision::as_needed or Precision::digits50, or another s"};
-}
-
 template <class T>
 solve::Matrices<T> Evaluation<T>::respond(const T& s) {
   const Graph& g = data_.graph();

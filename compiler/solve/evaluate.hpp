@@ -16,9 +16,6 @@ using solve::kUnderflow;
 /// The error of an evaluation at s, if s is a pole or numerically one.
 Error no_digit_left(const Factored& data, std::complex<double> s);
 
-/// The error if RefinedSolution::refinement_error() is too large, or if it does not hold (1).
-Error not_refined(const Factored& data, std::complex<double> s, double error);
-
 /// A larger change of the outputs needs another step of refinement, in any precision; a larger
 /// error a finer precision, or it is refused.
 constexpr double kEnough = 1e-12;
@@ -92,6 +89,8 @@ class Evaluation final : public RefinedSolution<T> {
     return factors_->solve(rhs);
   }
   double weakest_pivot() const override { return factors_->health().weakest; }
+  /// Its variable of the joint system; -1 if no pivot has lost digits.
+  int weakest_variable() const { return factors_->health().weakest_variable; }
 
   /// The change of the outputs by rounding (Losses::rounding), outputs x columns.
   solve::RowMatrix<T> rounding() const;

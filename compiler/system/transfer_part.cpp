@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <titop/compiler/solve/scalar.hpp>
 #include <titop/compiler/solve/transposed_evaluation.hpp>
 #include <titop/compiler/system/system_data.hpp>
 #include <titop/compiler/system/transfer_part.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <titop/graph/linalg/rounding.hpp>
+#include <type_traits>
 
 namespace titop::detail {
 namespace {
@@ -63,6 +66,7 @@ class Answer {
     return transposed_ ? worse(error, transposed_->refinement_error()) : error;
   }
   double weakest_pivot() const { return forward_.weakest_pivot(); }
+  int weakest_variable() const { return forward_.weakest_variable(); }
 
   TransferPart rounded() const {
     TransferPart part{solve::in_double(forward_.outputs()), {}, {}};
@@ -87,12 +91,38 @@ bool is_finite(const TransferPart& part) {
   return part.columns.allFinite() && part.rows.allFinite();
 }
 
+/// ": the weakest pivot, 1e-9 of its terms, is that of hub.child.accel"; empty if no pivot has lost
+/// digits.
+std::string weakest_words(const Factored& d, double pivot, int variable) {
+  const int signal = variable < 0 ? -1 : d.skeleton->as_written().variables[linalg::at(variable)];
+  if (signal < 0) return {};
+  return fmt::format(": the weakest pivot, {:.1g} of its terms, is that of {}", pivot,
+                     name_of(d.graph(), signal));
+}
+
+/// The error if `error` of an answer by these factors is too large, or if its unknowns do not solve
+/// the equations (1).
+template <class T>
+Error not_refined(const TransferRequest& r, const Answer<T>& factored, double error) {
+  constexpr bool kFinest = std::is_same_v<T, solve::Complex50>;
+  const std::string place =
+      fmt::format("{} at s = {}{:+}j: ", r.data.graph().name, r.s.real(), r.s.imag());
+  if (std::isinf(error))
+    return {Code::not_finite, place + "numbers exceed the range of this precision",
+            "take Precision::digits50, an s of smaller or larger modulus, or other units"};
+  return {Code::singular,
+          place + "refinement does not reach 12 digits" +
+              weakest_words(r.data, factored.weakest_pivot(), factored.weakest_variable()),
+          kFinest ? "take another s: 50 digits are too few beside a pole this near"
+                  : "take Precision::as_needed or Precision::digits50, or another s"};
+}
+
 /// The law of every precision: an answer is given only if its final unknowns solve the equations.
 /// (Overflow is refused by the caller.)
 template <class T>
 TransferPart judged(const TransferRequest& r, const Answer<T>& answer) {
   TransferPart part = answer.rounded();
-  if (is_finite(part) && !answer.holds()) throw not_refined(r.data, r.s, 1);
+  if (is_finite(part) && !answer.holds()) throw not_refined(r, answer, 1);
   return part;
 }
 
@@ -111,7 +141,7 @@ TransferPart refined(const TransferRequest& r) {
   const Answer<Double> coarse(r, solve::Refinement::none);
   const Answer<T> result(r, coarse);
   if (const double error = result.refinement_error(); !(error <= kEnough))
-    throw not_refined(r.data, r.s, error);
+    throw not_refined(r, coarse, error);
   return result.rounded();
 }
 
