@@ -71,8 +71,9 @@ Distances on_grid(const StateSpace& L, const LoopResponse& response,
   const Eigen::VectorXcd zeros = transmission_zeros(L);
   roots.insert(roots.end(), zeros.begin(), zeros.end());
   for (const LoopCrossing& c : unit) roots.emplace_back(0, c.omega);
-  const std::vector<double> list =
+  std::vector<double> list =
       apart(detail::structured(roots, 8 * response.delay(), detail::end_of_turns(response, roots)));
+  list.insert(list.begin(), 0);
   const auto distance = [&](double w) { return std::abs(1.0 + response.at(w)); };
   const MarginAt nearest =
       least([&](double w) { return std::isfinite(distance(w)) ? distance(w) : HUGE_VAL; }, list);

@@ -143,6 +143,20 @@ TEST_CASE("a conditionally stable loop: both gain margins") {
   CHECK(close(l.larger_gain, 1 / size(fast), fast));
 }
 
+TEST_CASE("a delayed lag that is nearest to -1 at rest") {
+  // L = -k / (s + 1): |1 + L| = 1 - k and |1 - L| = 1 + k at 0, and more than the one, less than
+  // the other above it.
+  for (const double k : {0.5, 0.9, 0.999})
+    for (const double tau : {1e-3, 1e-2, 1.0}) {
+      CAPTURE(k);
+      CAPTURE(tau);
+      const LoopMargins m = one(ratio({-k}, {1, 1}), tau);
+      CHECK(std::abs(m.nearest.value / (1 - k) - 1) <= 1e-12);
+      CHECK(m.nearest.omega == 0);
+      CHECK(std::abs(m.disk.alpha / (2 * (1 - k) / (1 + k)) - 1) <= 1e-12);
+    }
+}
+
 TEST_CASE("an integrator with a lag and a delay, the lag from slower to far faster") {
   for (const double a : {0.3, 3.0, 30.0, 300.0, 2000.0, 1e4, 1e6})
     for (const double k : {0.5, 3.0}) {
