@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 #include <titop/analysis/control/discrete.hpp>
+#include <titop/analysis/control/nyquist.hpp>
 #include <titop/analysis/simulation/hold.hpp>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/dense.hpp>
@@ -149,7 +150,7 @@ Margins margins(const DiscreteModel& L) {
   if (!(L.period > 0) || std::isinf(L.period))
     throw Error(Code::bad_value, fmt::format("a period of {} s", L.period),
                 "give a positive, finite time in seconds");
-  Margins m = margins(on_axis(L.model, 2 / L.period));
+  Margins m = detail::margins_of(on_axis(L.model, 2 / L.period), 0, L.period);
   const Unwarp unwarp(L.period);
   unwarp(m.disk.omega);
   unwarp(m.nearest.omega);

@@ -8,6 +8,7 @@
 #include <titop/analysis/norms/scaled.hpp>
 #include <titop/compiler/minreal/poles.hpp>
 #include <titop/graph/error.hpp>
+#include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/support/each_once.hpp>
 
@@ -15,6 +16,13 @@ namespace titop::detail {
 namespace {
 
 constexpr double kMostTurns = 1e5;  ///< of a delay, in quarters
+
+/// Rounding of the poles of the discrete model whose image by w = c (z - 1) / (z + 1) this is.
+double rounding_in_z(StateSpace m, double c) {
+  const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(m.A.rows(), m.A.rows());
+  m.A = linalg::inverse(c * I - m.A).matrix * (c * I + m.A);
+  return rounding_of_poles(m);
+}
 
 }  // namespace
 
@@ -43,13 +51,18 @@ std::vector<std::complex<double>> all_poles(const StateSpace& model) {
   return all;
 }
 
-std::vector<SidedPole> sided_poles(const StateSpace& model) {
-  const double rounding = rounding_of_poles(scaled(model));
+std::vector<SidedPole> sided_poles(const StateSpace& model, double period) {
+  const StateSpace m = scaled(model);
+  const double own = rounding_of_poles(m), in_z = period > 0 ? rounding_in_z(m, 2 / period) : 0;
   std::vector<SidedPole> result;
-  for (const std::complex<double>& s : all_poles(model))
-    result.push_back({s, std::abs(s.real()) <= rounding ? Side::axis
-                         : s.real() > 0                 ? Side::right
-                                                        : Side::left});
+  for (const std::complex<double>& s : all_poles(model)) {
+    // dw/dz = (2 / period - w)^2 period / 4
+    const double rounding = std::max(own, std::norm(2 / period - s) * period / 4 * in_z);
+    if (std::abs(s.real()) <= rounding)
+      result.push_back({{0, s.imag()}, Side::axis});
+    else
+      result.push_back({s, s.real() > 0 ? Side::right : Side::left});
+  }
   return result;
 }
 

@@ -29,13 +29,16 @@ class LoopResponse {
 /// Poles of a model [rad/s], each of a pair: those at 0 exactly (compiler/minreal/poles.hpp).
 std::vector<std::complex<double>> all_poles(const StateSpace& model);
 
-/// Right of the axis, on it (up to the rounding of the model's poles), or left of it.
+/// Right of the axis, on it (up to the rounding of the model's poles; their real part is then 0),
+/// or left of it.
 enum class Side { left, axis, right };
 struct SidedPole {
   std::complex<double> s;
   Side side = Side::left;
 };
-std::vector<SidedPole> sided_poles(const StateSpace& model);
+/// `period` > 0: of a discrete model whose image by w = (2 / period) (z - 1) / (z + 1) this is: a
+/// pole near z = 1 is rounded to a unit of 1, which is more than one of w.
+std::vector<SidedPole> sided_poles(const StateSpace& model, double period = 0);
 
 /// Frequencies [rad/s], ascending and different, above 0, at which or between which |L| and arg L
 /// change: |s| and Im s of the roots given, with a delay steps of a quarter turn up to `end`, two

@@ -163,17 +163,16 @@ void add_warnings(Margins& m, const std::vector<Note>& notes) {
 
 }  // namespace
 
-Margins margins(const StateSpace& L, const MarginOptions& options) {
-  check(L, options.delay);
+Margins detail::margins_of(const StateSpace& L, double delay, double period) {
+  check(L, delay);
   Margins m;
-  m.nyquist = detail::nyquist_count(L, LoopResponse(L, options.delay));
-  if (options.delay > 0 && nearest_with_delay(L, options.delay) <= linalg::kHalfDigits)
+  m.nyquist = nyquist_count(L, LoopResponse(L, delay), period);
+  if (delay > 0 && nearest_with_delay(L, delay) <= linalg::kHalfDigits)
     m.nyquist.closed_on_axis = 1;
   m.stable = m.nyquist.closed_right == 0 && m.nyquist.closed_on_axis == 0 && m.nyquist.agree;
   const int count = static_cast<int>(L.D.rows());
   for (int i = 0; i < count; ++i)
-    m.loops.push_back(
-        of_one(count == 1 ? L : detail::alone(L, i), options.delay, m.stable, point_name(L, i)));
+    m.loops.push_back(of_one(count == 1 ? L : alone(L, i), delay, m.stable, point_name(L, i)));
   if (count == 1) {
     m.disk = m.loops[0].disk, m.nearest = m.loops[0].nearest;
   } else if (m.stable) {
@@ -181,6 +180,10 @@ Margins margins(const StateSpace& L, const MarginOptions& options) {
     m.disk = d.disk, m.nearest = d.nearest;
   }
   return m;
+}
+
+Margins margins(const StateSpace& L, const MarginOptions& options) {
+  return detail::margins_of(L, options.delay, 0);
 }
 
 Margins margins(const ControlLoop& loop, const MarginOptions& options) {

@@ -142,16 +142,16 @@ double turn_of_half(const StateSpace& L, const LoopResponse& response,
 
 }  // namespace
 
-NyquistCount nyquist_count(const StateSpace& L, const LoopResponse& response) {
+NyquistCount nyquist_count(const StateSpace& L, const LoopResponse& response, double period) {
   NyquistCount count;
-  const std::vector<SidedPole> open = sided_poles(L);
+  const std::vector<SidedPole> open = sided_poles(L, period);
   std::vector<Complex> poles;
   for (const SidedPole& p : open) {
     count.open_right += p.side == Side::right;
     poles.push_back(p.s);
   }
   if (response.delay() == 0) {
-    for (const SidedPole& p : sided_poles(sensitivity(L))) {
+    for (const SidedPole& p : sided_poles(sensitivity(L), period)) {
       count.closed_right += p.side == Side::right;
       count.closed_on_axis += p.side == Side::axis;
       poles.push_back(p.s);

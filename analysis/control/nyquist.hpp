@@ -10,7 +10,10 @@ namespace titop::detail {
 /// of L on the axis by half circles of a third of the distance to the next pole, open or closed;
 /// with a delay, whose closed-loop poles are not known, smaller ones, on which |L| > 10.
 /// Steps along the axis are halved until the determinant turns by less than half a radian in each
-/// half; they begin at each pole and at distances from it that grow by 4.
-NyquistCount nyquist_count(const StateSpace& L, const LoopResponse& response);
+/// half; they begin at each pole and at distances from it that grow by 4. `period`: as sided_poles.
+NyquistCount nyquist_count(const StateSpace& L, const LoopResponse& response, double period = 0);
+
+/// Margins of a loop transfer, or with a period of the discrete one whose image it is.
+Margins margins_of(const StateSpace& L, double delay, double period);
 
 }  // namespace titop::detail

@@ -85,6 +85,34 @@ TEST_CASE("a sampled law on a continuous plant") {
   CHECK(std::abs(at(L, l.larger_gain.omega).imag()) <= 1e-9);
 }
 
+TEST_CASE("a pole at z = 1 in any coordinates") {
+  // L = 1 / s + 1 / (s + 1), held: the closed loop's poles are roots of
+  // (z - 1) (z - e) + h (z - e) + (1 - e) (z - 1), e = exp(-h): inside the circle.
+  constexpr double h = 0.01;
+  const double e = std::exp(-h), q = (-1 - e + h + 1 - e) / 2, p = e - h * e - (1 - e);
+  REQUIRE(std::abs(-q + std::sqrt(q * q - p)) < 1);
+  StateSpace m;
+  m.D = Eigen::MatrixXd::Zero(1, 1);
+  double phase = 0;
+  for (int k = 0; k < 150; ++k) {
+    const Eigen::Matrix2d Q = Eigen::Rotation2Dd(k * 7e-3).toRotationMatrix();
+    m.A = Q * Eigen::Vector2d(0, -1).asDiagonal() * Q.transpose();
+    m.B = Q * Eigen::Vector2d::Ones(), m.C = Eigen::RowVector2d::Ones() * Q.transpose();
+    const Margins found = margins(discretize(m, h));
+    CAPTURE(k);
+    REQUIRE(found.stable);
+    const double angle = found.loops.at(0).phase.value;
+    if (k == 0) {
+      phase = angle;
+      const Complex z = std::polar(1.0, found.loops.at(0).phase.omega * h);
+      const Complex L = h / (z - 1.0) + (1 - e) / (z - e);
+      CHECK(std::abs(std::abs(L) - 1) <= 1e-9);
+      CHECK(std::abs(std::arg(-L) - phase) <= 1e-9);
+    }
+    CHECK(std::abs(angle / phase - 1) <= 1e-9);
+  }
+}
+
 TEST_CASE("Pade's approximation: all-pass, its phase, and in a diagram") {
   for (int n = 1; n <= 8; ++n) {
     const Lti p = pade(0.3, n);
