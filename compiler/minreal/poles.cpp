@@ -4,9 +4,11 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <titop/compiler/minreal/at_zero.hpp>
 #include <titop/compiler/minreal/poles.hpp>
+#include <titop/compiler/minreal/poles_of.hpp>
 #include <titop/compiler/realization/proportional.hpp>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/dense.hpp>
@@ -109,8 +111,11 @@ void general_poles(const StateSpace& model, const MatrixXd& rounding, std::vecto
 
 /// States that no state depends on through A, or that depend on no state (a free hinge's angle,
 /// then its rate; an integrator): exact poles at A(j, j), mostly 0, that a numerical eigenvalue
-/// routine would smear. Takes them out of the model, one after the other.
-void deflate(StateSpace& m, MatrixXd& rounding, MatrixXd& energy, std::vector<Pole>& out) {
+/// routine would smear. Takes them out of the model, one after the other; returns the places of the
+/// states that stay.
+std::vector<Eigen::Index> deflate(StateSpace& m, MatrixXd& energy, std::vector<Pole>& out) {
+  std::vector<Eigen::Index> stay(static_cast<std::size_t>(m.A.rows()));
+  std::iota(stay.begin(), stay.end(), Eigen::Index{0});
   for (bool found = true; found;) {
     found = false;
     for (Eigen::Index j = 0; j < m.A.rows() && !found; ++j) {
@@ -128,17 +133,25 @@ void deflate(StateSpace& m, MatrixXd& rounding, MatrixXd& energy, std::vector<Po
       for (Eigen::Index i = 0; i < m.A.rows(); ++i)
         if (i != j) keep.push_back(i);
       m.A = m.A(keep, keep).eval();
-      for (MatrixXd* of : {&rounding, &energy})
-        if (of->size() > 0) *of = (*of)(keep, keep).eval();
+      if (energy.size() > 0) energy = energy(keep, keep).eval();
+      stay.erase(stay.begin() + j);
       m.states.erase(m.states.begin() + j);
       if (j < std::ssize(m.rates)) m.rates.erase(m.rates.begin() + j);
     }
   }
+  return stay;
 }
 
 }  // namespace
 
 std::vector<Pole> poles(const StateSpace& model, const MatrixXd& rounding, const MatrixXd& energy) {
+  return detail::poles_of(
+      model, [&] { return rounding; }, energy);
+}
+
+std::vector<Pole> detail::poles_of(const StateSpace& model,
+                                   const std::function<MatrixXd()>& rounding,
+                                   const MatrixXd& energy) {
   if (model.A.rows() != model.A.cols())
     throw Error(Code::size, fmt::format("poles: A is {} x {}", model.A.rows(), model.A.cols()),
                 "give a square A");
@@ -148,13 +161,16 @@ std::vector<Pole> poles(const StateSpace& model, const MatrixXd& rounding, const
     rest.states.assign(static_cast<std::size_t>(rest.A.rows()), "x");
     rest.rates.clear();
   }
-  MatrixXd of_rest = rounding, energy_of_rest = energy;
-  deflate(rest, of_rest, energy_of_rest, result);
+  MatrixXd energy_of_rest = energy;
+  const std::vector<Eigen::Index> stay = deflate(rest, energy_of_rest, result);
   std::vector<Pole> others;
   const SecondOrder form = second_order(rest, energy_of_rest);
   if (!form.found || !proportional_poles(rest, form, others)) {
     others.clear();
-    if (rest.order() > 0) general_poles(rest, of_rest, others);
+    if (rest.order() > 0) {
+      const MatrixXd of_all = rounding();
+      general_poles(rest, of_all.size() > 0 ? MatrixXd(of_all(stay, stay)) : of_all, others);
+    }
   }
   result.insert(result.end(), others.begin(), others.end());
   std::stable_sort(result.begin(), result.end(), [](const Pole& a, const Pole& b) {

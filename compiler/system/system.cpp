@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <titop/compiler/certificate/without_rounding.hpp>
+#include <titop/compiler/minreal/poles_of.hpp>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/realization/energy.hpp>
 #include <titop/compiler/realization/write_model.hpp>
@@ -100,11 +101,12 @@ std::vector<Pole> System::poles() const {
   // Each state that `minimize` has removed added a product to the entries of A.
   const double sums = 1.0 + order() - model.order();
   const bool chains = model.order() == order() && !data_->states.trivial();
+  const auto rounding = [&]() -> MatrixXd {
+    if (whole) return detail::rounding_of(*data_, model).A;
+    return sums * linalg::kEpsilon * model.A.cwiseAbs();
+  };
   std::vector<Pole> list =
-      titop::poles(model,
-                   whole ? detail::rounding_of(*data_, model).A
-                         : MatrixXd(sums * linalg::kEpsilon * model.A.cwiseAbs()),
-                   chains ? detail::potential_energy(*data_) : MatrixXd());
+      detail::poles_of(model, rounding, chains ? detail::potential_energy(*data_) : MatrixXd());
   detail::compare_with_bodies(*data_, list);
   return list;
 }
