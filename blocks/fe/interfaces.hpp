@@ -56,7 +56,7 @@ Coupling shapes(NodeSet edge, Legendre polynomials);
 
 /// Coefficients of the edge's motion by these shapes, by least squares of its displacements and its
 /// rotation about the edge along its length: of a plate by the integrals of its Hermite functions,
-/// else by the trapezoidal rule. The rest of its motion is free.
+/// else, and of a membrane in its plane, by the trapezoidal rule. The rest of its motion is free.
 Coupling moments(NodeSet edge, Legendre polynomials);
 
 /// The mesh with this interface, for one coordinate each in place of the nodes' rows: six of a new
