@@ -64,6 +64,9 @@ StateSpace on_axis(const StateSpace& m, double c) {
   w.B = std::sqrt(2 * c) * N * m.B;
   w.C = std::sqrt(2 * c) * m.C * N;
   w.D = m.D - m.C * N * m.B;
+  // L(-1) of Tustin's rule for a loop without a direct term: 0 by cancellation.
+  const MatrixXd terms = m.D.cwiseAbs() + m.C.cwiseAbs() * N.cwiseAbs() * m.B.cwiseAbs();
+  w.D = (w.D.array().abs() <= linalg::kProductRounding * terms.array()).select(0.0, w.D);
   w.rates.clear();
   return w;
 }

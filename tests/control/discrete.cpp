@@ -113,6 +113,21 @@ TEST_CASE("a pole at z = 1 in any coordinates") {
   }
 }
 
+TEST_CASE("Tustin's rule makes no gain margin of rounding") {
+  // L = (0.7 a (s + a) + 1.3) / ((s + a) (s + 2 a)): its phase stays above -180 degrees, and L is 0
+  // at z = -1.
+  StateSpace m;
+  m.B = Eigen::Vector2d(0, 1), m.D = Eigen::MatrixXd::Zero(1, 1);
+  for (int k = 1; k < 100; ++k) {
+    const double a = 1.48 * k;
+    m.A = Eigen::Matrix2d{{-a, 1.3}, {0, -2 * a}}, m.C = Eigen::RowVector2d(1, 0.7 * a);
+    const Margins found = margins(discretize(m, 0.01 / std::sqrt(a), Discretization::tustin));
+    CAPTURE(a);
+    CHECK(found.stable);
+    CHECK(std::isinf(found.loops.at(0).larger_gain.value));
+  }
+}
+
 TEST_CASE("Pade's approximation: all-pass, its phase, and in a diagram") {
   for (int n = 1; n <= 8; ++n) {
     const Lti p = pade(0.3, n);
