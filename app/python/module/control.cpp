@@ -19,7 +19,8 @@ void bind_loops(py::module_& m) {
       m, "ControlLoop",
       "A loop cut at loop points, of negative feedback: L, S = (1 + L)^-1 and T "
       "= 1 - S as systems.")
-      .def_readonly("points", &ControlLoop::points)
+      .def_readonly("points", &ControlLoop::points,
+                    "Names of the loop points, in the order of rows and columns.")
       .def_readonly("L", &ControlLoop::L, "Loop transfer.")
       .def_readonly("S", &ControlLoop::S, "Sensitivity.")
       .def_readonly("T", &ControlLoop::T, "Complementary sensitivity.");
@@ -42,10 +43,12 @@ void bind_responses(py::module_& m) {
   py::class_<BodeResponse>(m, "BodeResponse", "One response over frequencies.")
       .def_property_readonly(
           "omega", [](const BodeResponse& r) { return py::array(py::cast(r.omega)); }, "[rad/s]")
-      .def_property_readonly("decibels",
-                             [](const BodeResponse& r) { return py::array(py::cast(r.decibels)); })
-      .def_property_readonly("degrees",
-                             [](const BodeResponse& r) { return py::array(py::cast(r.degrees)); });
+      .def_property_readonly(
+          "decibels", [](const BodeResponse& r) { return py::array(py::cast(r.decibels)); },
+          "Magnitude at each omega [dB].")
+      .def_property_readonly(
+          "degrees", [](const BodeResponse& r) { return py::array(py::cast(r.degrees)); },
+          "Phase at each omega [deg].");
   m.def(
       "bode",
       [](const System& s, const std::string& output, const std::string& input,
@@ -56,7 +59,8 @@ void bind_responses(py::module_& m) {
         "Transmission zeros of a StateSpace [rad/s].");
   m.def("norm_h2", &norm_h2, "model"_a, Unlocked(), "The H2 norm of a StateSpace.");
   py::class_<HinfNorm>(m, "HinfNorm", "The largest gain of a model.")
-      .def_readonly("value", &HinfNorm::value)
+      .def_readonly("value", &HinfNorm::value,
+                    "Largest singular value of the transfer over the band.")
       .def_readonly("omega", &HinfNorm::omega, "[rad/s]; inf: of the direct term.");
   m.def(
       "norm_hinf",
@@ -76,7 +80,8 @@ void bind_responses(py::module_& m) {
 void bind_discrete(py::module_& m) {
   py::class_<DiscreteModel>(m, "DiscreteModel",
                             "x(k + 1) = A x(k) + B u(k), y(k) = C x(k) + D u(k) at a period [s].")
-      .def_readonly("model", &DiscreteModel::model)
+      .def_readonly("model", &DiscreteModel::model,
+                    "StateSpace with A, B, C, D of the difference equations.")
       .def_readonly("period", &DiscreteModel::period, "[s]")
       .def("at", &DiscreteModel::at, "omega"_a, "The transfer at exp(j omega period).");
   m.def(

@@ -124,7 +124,7 @@ void bind_diagram(py::module_& m) {
       "Blocks, equations on their ports, inputs, outputs and parameters. Mistakes in names and "
       "equations are collected and raised together by compile.")
       .def(py::init<std::string>(), "name"_a)
-      .def_property_readonly("name", &Diagram::name)
+      .def_property_readonly("name", &Diagram::name, "As given.")
       .def(
           "clone", [](const Diagram& d) { return std::make_shared<Diagram>(d.clone()); },
           "An independent copy; ports of the original keep pointing into the original.")

@@ -16,8 +16,8 @@ void bind_exact_beam(py::module_& m) {
            py::kw_only(), "length"_a, "section"_a, "material"_a,
            "damping"_a = std::pair<double, double>(0, 0))
       .def_readonly("length", &ExactBeam::length, "[m]")
-      .def_readonly("section", &ExactBeam::section)
-      .def_readonly("material", &ExactBeam::material)
+      .def_readonly("section", &ExactBeam::section, "Its Section.")
+      .def_readonly("material", &ExactBeam::material, "Its Material.")
       .def_property_readonly(
           "damping",
           [](const ExactBeam& b) { return std::pair(b.damping.mass, b.damping.stiffness); },

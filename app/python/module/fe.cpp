@@ -31,9 +31,11 @@ void bind_ports_of_modes(py::module_& m) {
              return ModalChild{name, PC, Phi_C};
            }),
            "name"_a, "PC"_a, "Phi_C"_a)
-      .def_readwrite("name", &ModalChild::name)
-      .def_property("PC", copy_of(&ModalChild::PC), set(&ModalChild::PC), "From P [m].")
-      .def_property("Phi_C", copy_of(&ModalChild::Phi_C), set(&ModalChild::Phi_C), "6 x N.");
+      .def_readwrite("name", &ModalChild::name, "Of the child point.")
+      .def_property("PC", copy_of(&ModalChild::PC), set(&ModalChild::PC),
+                    "Vector of 3 from P to C, in the body's frame [m].")
+      .def_property("Phi_C", copy_of(&ModalChild::Phi_C), set(&ModalChild::Phi_C),
+                    "6 x N: displacements at C [1/sqrt(kg)], then rotations [rad/(m sqrt(kg))].");
   py::class_<ModalLine>(
       m, "ModalLine",
       "An edge of a flexible body as an interface: its name (of the child, or of the parent), the "
@@ -47,17 +49,21 @@ void bind_ports_of_modes(py::module_& m) {
              return line;
            }),
            "name"_a, "axis"_a, "length"_a, "shapes"_a, "Phi"_a)
-      .def_readonly("name", &ModalLine::name)
-      .def_readonly("axis", &ModalLine::axis)
+      .def_readonly("name", &ModalLine::name,
+                    "Of the child, or of the parent's interface in the mesh.")
+      .def_readonly("axis", &ModalLine::axis, "Body axis along which it runs: 0, 1, 2.")
       .def_readonly("length", &ModalLine::length, "[m]")
-      .def_property_readonly("shapes",
-                             [](const ModalLine& l) {
-                               std::vector<std::pair<int, int>> shapes;
-                               for (const LineShape& s : l.shapes)
-                                 shapes.emplace_back(s.component, s.degree);
-                               return shapes;
-                             })
-      .def_property_readonly("Phi", copy_of(&ModalLine::Phi), "shapes x N.");
+      .def_property_readonly(
+          "shapes",
+          [](const ModalLine& l) {
+            std::vector<std::pair<int, int>> shapes;
+            for (const LineShape& s : l.shapes) shapes.emplace_back(s.component, s.degree);
+            return shapes;
+          },
+          "[(component 0..5, degree of the Legendre polynomial)].")
+      .def_property_readonly(
+          "Phi", copy_of(&ModalLine::Phi),
+          "shapes x N, their coordinates in the modes [1/sqrt(kg), rad/(m sqrt(kg))].");
 }
 
 void bind_modal_data(py::module_& m) {
@@ -76,14 +82,17 @@ void bind_modal_data(py::module_& m) {
            "children"_a = std::vector<ModalChild>(), "digits"_a = 15.0,
            "lines"_a = std::vector<ModalLine>())
       .def_property("omega", copy_of(&ModalData::omega), set_numbers(&ModalData::omega),
-                    "N [rad/s].")
-      .def_property("xi", copy_of(&ModalData::xi), set_numbers(&ModalData::xi), "N [-].")
-      .def_property("L_P", copy_of(&ModalData::L_P), set(&ModalData::L_P), "N x 6.")
-      .def_property("D_P", copy_of(&ModalData::D_P), set(&ModalData::D_P), "6 x 6.")
+                    "N, natural frequencies clamped at P [rad/s].")
+      .def_property("xi", copy_of(&ModalData::xi), set_numbers(&ModalData::xi),
+                    "N, damping ratios of these modes [-].")
+      .def_property("L_P", copy_of(&ModalData::L_P), set(&ModalData::L_P),
+                    "N x 6, participation factors at P [sqrt(kg), sqrt(kg) m].")
+      .def_property("D_P", copy_of(&ModalData::D_P), set(&ModalData::D_P),
+                    "6 x 6, rigid mass matrix about P [kg, kg m, kg m^2].")
       .def_property(
           "children", [](const ModalData& data) { return py::tuple(py::cast(data.children)); },
           set(&ModalData::children), "A tuple of copies: change one and assign them all.")
-      .def_readwrite("digits", &ModalData::digits)
+      .def_readwrite("digits", &ModalData::digits, "Decimal digits that the data carry.")
       .def_property(
           "lines", [](const ModalData& data) { return py::tuple(py::cast(data.lines)); },
           set(&ModalData::lines), "A tuple of copies.")
@@ -97,10 +106,11 @@ void bind_beams(py::module_& m) {
              return Section{area, I_y, I_z, J, I_x};
            }),
            py::kw_only(), "area"_a, "I_y"_a, "I_z"_a, "J"_a, "I_x"_a = py::none())
-      .def_readonly("area", &Section::area)
-      .def_readonly("I_y", &Section::I_y)
-      .def_readonly("I_z", &Section::I_z)
-      .def_readonly("J", &Section::J);
+      .def_readonly("area", &Section::area, "[m^2]")
+      .def_readonly("I_y", &Section::I_y, "Integral of z^2: bending in the x-z plane [m^4].")
+      .def_readonly("I_z", &Section::I_z, "Integral of y^2: bending in the x-y plane [m^4].")
+      .def_readonly("J", &Section::J, "Torsion constant (Saint-Venant) [m^4].")
+      .def_readonly("I_x", &Section::I_x, "Polar moment [m^4]; None: I_y + I_z.");
   m.def("rectangle", &rectangle, "width_y"_a, "height_z"_a, "Section of a solid rectangle [m].");
   m.def("circle", &circle, "diameter"_a, "Section of a solid circle [m].");
   m.def("tube", &tube, "outer_diameter"_a, "inner_diameter"_a, "Section of a circular tube [m].");
@@ -110,7 +120,11 @@ void bind_beams(py::module_& m) {
       .def(py::init([](double E, std::optional<double> nu, std::optional<double> G, double rho) {
              return Material{E, nu, G, rho};
            }),
-           py::kw_only(), "E"_a = 0.0, "nu"_a = py::none(), "G"_a = py::none(), "rho"_a);
+           py::kw_only(), "E"_a = 0.0, "nu"_a = py::none(), "G"_a = py::none(), "rho"_a)
+      .def_readonly("E", &Material::E, "Young's modulus [Pa].")
+      .def_readonly("nu", &Material::nu, "Poisson's ratio [-]; None if G is given.")
+      .def_readonly("G", &Material::G, "Shear modulus [Pa]; None if nu is given.")
+      .def_readonly("rho", &Material::rho, "Density [kg/m^3].");
   py::class_<Beam>(m, "Beam",
                    "Uniform Euler-Bernoulli beam from P at the origin to C at (length, 0, 0) [m], "
                    "of equal finite elements; `modes` selects those that are kept.")

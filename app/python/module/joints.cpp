@@ -62,8 +62,9 @@ void bind_slide(py::module_& m) {
 
 void bind_joint(py::module_& m) {
   py::class_<Axis>(m, "Axis", "One degree of freedom of a joint: about(r) or along(r).")
-      .def_readonly("direction", &Axis::direction)
-      .def_readonly("name", &Axis::name);
+      .def_readonly("direction", &Axis::direction,
+                    "Vector of 3 in the joint's frame, any length but 0.")
+      .def_readonly("name", &Axis::name, "Of its ports and states; \"\": axis1, axis2, ...");
   m.def("about", &about, "r"_a, "name"_a = "", "A revolute axis about the vector r [rad].");
   m.def("along", &along, "r"_a, "name"_a = "", "A prismatic axis along the vector r [m].");
   m.def("ball", &ball, "Axes rx, ry, rz.");

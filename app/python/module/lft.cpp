@@ -19,24 +19,28 @@ void bind_isolated(py::module_& m) {
   m.def("between", &between, "least"_a, "largest"_a, "From least to largest.");
   m.def("full_turn", &full_turn, "Every value of an angle.");
   py::class_<ParameterMap>(m, "ParameterMap", "From a parameter's value to delta in [-1, 1].")
-      .def_readonly("nominal", &ParameterMap::nominal)
-      .def_readonly("from_", &ParameterMap::from)
-      .def_readonly("to", &ParameterMap::to)
-      .def("delta", &ParameterMap::delta, "p"_a)
-      .def("value", &ParameterMap::value, "delta"_a);
+      .def_readonly("nominal", &ParameterMap::nominal, "Value of the parameter at delta = 0.")
+      .def_readonly("from_", &ParameterMap::from, "Value of the parameter at delta = -1.")
+      .def_readonly("to", &ParameterMap::to, "Value of the parameter at delta = 1.")
+      .def("delta", &ParameterMap::delta, "p"_a, "In [-1, 1] for p in [from_, to].")
+      .def("value", &ParameterMap::value, "delta"_a, "The value p of the parameter.");
   py::class_<Delta>(m, "Delta", "A parameter in an Lft.")
-      .def_readonly("parameter", &Delta::parameter)
-      .def_readonly("first", &Delta::first)
+      .def_readonly("parameter", &Delta::parameter, "Its name.")
+      .def_readonly("first", &Delta::first,
+                    "Place of its w among [w; u], and of its z among [z; y], from 0.")
       .def_readonly("size", &Delta::size, "Occurrences.")
       .def_readonly("at_least", &Delta::at_least, "Lower bound of them; 0: not computed.")
-      .def_readonly("map", &Delta::map)
-      .def_property_readonly("minimal", &Delta::minimal);
+      .def_readonly("map", &Delta::map, "ParameterMap between its value and delta.")
+      .def_property_readonly("minimal", &Delta::minimal,
+                             "True if no realization has fewer occurrences of it.");
   py::class_<Lft>(m, "Lft", "Parameters isolated from the model: w = Delta z; printed as a table.")
       .def_property_readonly(
           "m", [](const Lft& f) { return f.m(); },
           "The StateSpace M, inputs [w; u], outputs [z; y].")
-      .def_property_readonly("deltas", [](const Lft& f) { return f.deltas(); })
-      .def_property_readonly("occurrences", &Lft::occurrences)
+      .def_property_readonly(
+          "deltas", [](const Lft& f) { return f.deltas(); },
+          "List of Delta, in the order of w and z.")
+      .def_property_readonly("occurrences", &Lft::occurrences, "Of all parameters: the size of w.")
       .def(
           "at", [](const Lft& f, const Values& v) { return f.at(list_of_values(v)); }, "values"_a,
           Unlocked(), "The StateSpace with Delta closed at {parameter: value}.")
@@ -75,7 +79,9 @@ void bind_isolated(py::module_& m) {
 
 void bind_reduced(py::module_& m) {
   py::class_<ReducedLft>(m, "ReducedLft", "An Lft whose M has fewer states, and the error of M.")
-      .def_property_readonly("lft", [](const ReducedLft& r) { return r.lft(); })
+      .def_property_readonly(
+          "lft", [](const ReducedLft& r) { return r.lft(); },
+          "The Lft with the reduced M, without lower bounds.")
       .def_property_readonly(
           "bound", [](const ReducedLft& r) { return r.bound(); },
           "The ErrorBound of M, outputs [z; y], inputs [w; u].")
@@ -101,14 +107,18 @@ void bind_derivatives(py::module_& m) {
       .def_readonly("s", &PoleSlopes::s, "[rad/s]")
       .def_readonly("count", &PoleSlopes::count, "Equal poles.")
       .def_readonly("slopes", &PoleSlopes::slopes, "Per parameter [rad/s per unit].")
-      .def_readonly("defective", &PoleSlopes::defective);
+      .def_readonly("defective", &PoleSlopes::defective,
+                    "True if there are fewer eigenvectors than equal poles: it has no slopes.");
   py::class_<Slopes>(m, "Slopes", "A number and its derivatives by the parameters.")
-      .def_readonly("value", &Slopes::value)
-      .def_readonly("slopes", &Slopes::slopes);
+      .def_readonly("value", &Slopes::value, "The number itself.")
+      .def_readonly("slopes", &Slopes::slopes,
+                    "One per parameter [unit of value per unit of the parameter].");
   py::class_<PeakSlopes, Slopes>(m, "PeakSlopes", "The largest gain and its derivatives.")
-      .def_readonly("omega", &PeakSlopes::omega, "[rad/s]");
+      .def_readonly("omega", &PeakSlopes::omega, "Where the peak is [rad/s].");
   py::class_<Derivatives>(m, "Derivatives", "Exact derivatives of a model by its parameters.")
-      .def_property_readonly("parameters", [](const Derivatives& g) { return g.parameters(); })
+      .def_property_readonly(
+          "parameters", [](const Derivatives& g) { return g.parameters(); },
+          "Their names, in the order of slopes.")
       .def(
           "transfer",
           [](const Derivatives& g, std::complex<double> s, const std::string& p) {

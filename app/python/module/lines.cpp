@@ -25,7 +25,8 @@ void bind_line_port(py::module_& m) {
   py::class_<BodyLine>(m, "LinePort",
                        "An edge of a flexible body as an interface: the six channels at its "
                        "middle, and one scalar channel for each of its shapes.")
-      .def_property_readonly("name", [](const BodyLine& l) { return l.line.name; })
+      .def_property_readonly(
+          "name", [](const BodyLine& l) { return l.line.name; }, "Block and line, \"p1.next\".")
       .def_property_readonly(
           "point", [](const BodyLine& l) { return TwoWayPort(l.diagram, l.line.point); },
           "The child at its middle, or the parent.")

@@ -47,7 +47,7 @@ void bind_meshes(py::module_& m) {
       .def(py::init(&mesh_by_hand), py::kw_only(), "name"_a = "mesh", "points"_a, "dofs"_a, "M"_a,
            "K"_a, "interfaces"_a = py::dict(), "edges"_a = py::dict(), "digits"_a = 15.0,
            "rigid"_a = py::none())
-      .def_readonly("name", &fe::Mesh::name)
+      .def_readonly("name", &fe::Mesh::name, "For messages.")
       .def_property_readonly(
           "points",
           [](const fe::Mesh& mesh) {

@@ -120,9 +120,9 @@ void bind_state_space(py::module_& m) {
       .def_readonly("B", &StateSpace::B, "n x inputs.")
       .def_readonly("C", &StateSpace::C, "outputs x n.")
       .def_readonly("D", &StateSpace::D, "outputs x inputs.")
-      .def_readonly("states", &StateSpace::states)
-      .def_readonly("inputs", &StateSpace::inputs)
-      .def_readonly("outputs", &StateSpace::outputs)
+      .def_readonly("states", &StateSpace::states, "Names, \"z1.stretch\".")
+      .def_readonly("inputs", &StateSpace::inputs, "Names, \"U(3)\".")
+      .def_readonly("outputs", &StateSpace::outputs, "Names, \"y(1)\".")
       .def_property_readonly("order", &StateSpace::order, "Number of states.")
       .def("transfer", &StateSpace::transfer, "s"_a, Unlocked(),
            "C (s - A)^-1 B + D at s [rad/s], outputs x inputs, complex.")
@@ -184,7 +184,8 @@ void bind_energy(py::module_& m) {
           "dissipated",
           [](const PortHamiltonian& h, const Numbers& x) { return h.dissipated(vector_of(x)); },
           "x"_a, "[W]")
-      .def("state_space", &PortHamiltonian::state_space);
+      .def("state_space", &PortHamiltonian::state_space,
+           "The StateSpace of the coordinates x, without names.");
   m.def(
       "port_hamiltonian", [](const SpringMass& spec) { return port_hamiltonian(spec); }, "block"_a,
       "A SpringMass as a port-Hamiltonian system.");
@@ -197,13 +198,15 @@ void bind_minimize(py::module_& m) {
   py::class_<JudgedMode>(m, "JudgedMode", "A mode that was removed, or that is near the limit.")
       .def_readonly("omega", &JudgedMode::omega, "|s| [rad/s].")
       .def_readonly("states", &JudgedMode::states, "2 for a pair of poles.")
-      .def_readonly("visibility", &JudgedMode::visibility)
+      .def_readonly("visibility", &JudgedMode::visibility,
+                    "Relative half-bandwidth in which it exceeds the rest of the transfer.")
       .def_readonly("bound", &JudgedMode::bound, "Possible visibility by rounding alone.")
-      .def_readonly("why", &JudgedMode::why);
+      .def_readonly("why", &JudgedMode::why,
+                    "\"no input moves it\", \"no output sees it\", \"its pole is at 0\", ...");
   py::class_<Minimized>(m, "Minimized", "A model without the states that have no effect.")
-      .def_readonly("model", &Minimized::model)
-      .def_readonly("order", &Minimized::order)
-      .def_readonly("notes", &Minimized::notes);
+      .def_readonly("model", &Minimized::model, "The StateSpace.")
+      .def_readonly("order", &Minimized::order, "Its OrderVerdict.")
+      .def_readonly("notes", &Minimized::notes, "Lines of text; the first is the verdict.");
   m.def(
       "minimize",
       [](const StateSpace& model, double resolution, int exact_order) {
@@ -223,35 +226,46 @@ void bind_certificates(py::module_& m) {
                     "evaluated.")
       .def_readonly("dense_error", &Certificate::dense_error,
                     "Error of A, B, C, D by rounding of their entries; negative: not evaluated.")
-      .def_readonly("weakest_pivot", &Certificate::weakest_pivot)
+      .def_readonly("weakest_pivot", &Certificate::weakest_pivot,
+                    "Smallest pivot over the sum of magnitudes of its terms: 1 without "
+                    "cancellation, 1e-16 without a digit.")
       .def_readonly("margin", &Certificate::margin, "Of algebraic loops; 1 for none.")
       .def("__str__", [](const Certificate& c) { return to_string(c); });
   py::class_<OrderVerdict>(m, "OrderVerdict", "Reliability of the order of a model.")
-      .def_readonly("order", &OrderVerdict::order)
-      .def_readonly("lowest", &OrderVerdict::lowest)
-      .def_readonly("highest", &OrderVerdict::highest)
+      .def_readonly("order", &OrderVerdict::order, "Number of states of the model.")
+      .def_readonly("lowest", &OrderVerdict::lowest,
+                    "Lower end of the interval of the minimal order, included.")
+      .def_readonly("highest", &OrderVerdict::highest,
+                    "Upper end of the interval of the minimal order, included.")
       .def_readonly("exact", &OrderVerdict::exact, "Decided by exact arithmetic.")
       .def_readonly("to_fewer", &OrderVerdict::to_fewer,
                     "Least visibility among the kept modes: error of removing the next.")
       .def_readonly("to_more", &OrderVerdict::to_more,
                     "Largest visibility among the removed modes.")
-      .def_readonly("removed", &OrderVerdict::removed)
-      .def_readonly("undecided", &OrderVerdict::undecided)
-      .def_property_readonly("decided", &OrderVerdict::decided)
+      .def_readonly("removed", &OrderVerdict::removed, "List of JudgedMode.")
+      .def_readonly("undecided", &OrderVerdict::undecided,
+                    "List of JudgedMode, kept or removed near the limit.")
+      .def_property_readonly("decided", &OrderVerdict::decided,
+                             "True if lowest and highest are equal.")
       .def("__str__", [](const OrderVerdict& v) { return to_string(v); });
   py::class_<FullCertificate>(m, "FullCertificate",
                               "The certificate on request, each item with its own oracle.")
       .def_readonly("faults", &FullCertificate::faults, "Failed checks in words.")
-      .def_property_readonly("holds", &FullCertificate::holds)
-      .def_readonly("order", &FullCertificate::order)
-      .def_property_readonly("poles_measured",
-                             [](const FullCertificate& c) { return c.poles.measured; })
-      .def_property_readonly("poles_count", [](const FullCertificate& c) { return c.poles.count; })
+      .def_property_readonly("holds", &FullCertificate::holds, "True without faults.")
+      .def_readonly("order", &FullCertificate::order, "OrderVerdict of the minimal dense model.")
+      .def_property_readonly(
+          "poles_measured", [](const FullCertificate& c) { return c.poles.measured; },
+          "Number of poles whose error is measured.")
+      .def_property_readonly(
+          "poles_count", [](const FullCertificate& c) { return c.poles.count; },
+          "Number of all poles before minimal realization.")
       .def("__str__", [](const FullCertificate& c) { return to_string(c); });
   py::class_<Note>(m, "Note", "A line of the compile log.")
-      .def_property_readonly("kind", [](const Note& n) { return std::string(to_string(n.kind)); })
+      .def_property_readonly(
+          "kind", [](const Note& n) { return std::string(to_string(n.kind)); },
+          "\"info\", \"inverted\", \"removed\", \"unchecked\" or \"warning\".")
       .def_readonly("pass_", &Note::pass, "The compiler's pass.")
-      .def_readonly("text", &Note::text)
+      .def_readonly("text", &Note::text, "Of the line, without the pass.")
       .def("__repr__", [](const Note& n) {
         return "<titop.Note: " + std::string(to_string(n.kind)) + ", pass " + n.pass + ": " +
                n.text + ">";

@@ -26,10 +26,10 @@ void bind_lti(py::module_& m) {
            }),
            py::kw_only(), "A"_a = Eigen::MatrixXd(), "B"_a = Eigen::MatrixXd(),
            "C"_a = Eigen::MatrixXd(), "D"_a = Eigen::MatrixXd(), "values"_a = std::vector<Entry>())
-      .def_readonly("A", &Lti::A)
-      .def_readonly("B", &Lti::B)
-      .def_readonly("C", &Lti::C)
-      .def_readonly("D", &Lti::D);
+      .def_readonly("A", &Lti::A, "n x n.")
+      .def_readonly("B", &Lti::B, "n x inputs.")
+      .def_readonly("C", &Lti::C, "outputs x n.")
+      .def_readonly("D", &Lti::D, "outputs x inputs; empty: 0.");
   Ports<Lti::Handle>(m, "LtiPorts", "Ports of an Lti or Integrator in a diagram.")
       .driven("in_", &Lti::Handle::in, "Its input.")
       .read("out", &Lti::Handle::out, "Its output.");

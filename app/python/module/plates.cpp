@@ -11,10 +11,10 @@ void bind_plate(py::module_& m) {
              return PlateStiffness{D11, D12, D22, D66};
            }),
            "D11"_a, "D12"_a, "D22"_a, "D66"_a)
-      .def_readonly("D11", &PlateStiffness::D11)
-      .def_readonly("D12", &PlateStiffness::D12)
-      .def_readonly("D22", &PlateStiffness::D22)
-      .def_readonly("D66", &PlateStiffness::D66);
+      .def_readonly("D11", &PlateStiffness::D11, "M_x by w_xx [N m].")
+      .def_readonly("D12", &PlateStiffness::D12, "M_x by w_yy, and M_y by w_xx [N m].")
+      .def_readonly("D22", &PlateStiffness::D22, "M_y by w_yy [N m].")
+      .def_readonly("D66", &PlateStiffness::D66, "Half of M_xy by w_xy [N m].");
   py::class_<MembraneStiffness>(
       m, "MembraneStiffness",
       "Stiffness in the plane of an orthotropic plate [N/m]: N_x = A11 u_x + A12 v_y, N_y = A12 "
@@ -23,10 +23,10 @@ void bind_plate(py::module_& m) {
              return MembraneStiffness{A11, A12, A22, A66};
            }),
            "A11"_a, "A12"_a, "A22"_a, "A66"_a)
-      .def_readonly("A11", &MembraneStiffness::A11)
-      .def_readonly("A12", &MembraneStiffness::A12)
-      .def_readonly("A22", &MembraneStiffness::A22)
-      .def_readonly("A66", &MembraneStiffness::A66);
+      .def_readonly("A11", &MembraneStiffness::A11, "N_x by u_x [N/m].")
+      .def_readonly("A12", &MembraneStiffness::A12, "N_x by v_y, and N_y by u_x [N/m].")
+      .def_readonly("A22", &MembraneStiffness::A22, "N_y by v_y [N/m].")
+      .def_readonly("A66", &MembraneStiffness::A66, "N_xy by the shear u_y + v_x [N/m].");
   py::class_<Plate>(m, "Plate",
                     "Rectangular thin plate (Kirchhoff) in the plane z = 0, 0 <= x <= a, 0 <= y <= "
                     "b [m], of this thickness [m]: it bends along z, rx, ry; in_plane it is "
@@ -48,15 +48,22 @@ void bind_plate(py::module_& m) {
            }),
            py::kw_only(), "a"_a, "b"_a, "thickness"_a, "material"_a, "D"_a = py::none(),
            "elements"_a = std::array<int, 2>{8, 8}, "in_plane"_a = "rigid", "A"_a = py::none())
-      .def_readonly("a", &Plate::a)
-      .def_readonly("b", &Plate::b)
-      .def_readonly("thickness", &Plate::thickness)
-      .def_readonly("elements", &Plate::elements);
+      .def_readonly("a", &Plate::a, "Side along x [m].")
+      .def_readonly("b", &Plate::b, "Side along y [m].")
+      .def_readonly("thickness", &Plate::thickness, "[m]")
+      .def_readonly("material", &Plate::material, "Its Material; with D only its rho counts.")
+      .def_readonly("D", &Plate::D, "PlateStiffness in place of E, nu, G; else None.")
+      .def_readonly("elements", &Plate::elements, "Numbers of equal elements along x and y.")
+      .def_property_readonly(
+          "in_plane",
+          [](const Plate& p) { return p.in_plane == InPlane::rigid ? "rigid" : "membrane"; },
+          "\"rigid\", or elastic in its plane: \"membrane\".")
+      .def_readonly("A", &Plate::A, "MembraneStiffness of a membrane with D; else None.");
 }
 
 void bind_node_sets(py::module_& m) {
   py::class_<fe::NodeSet>(m, "NodeSet", "Nodes of a mesh with their weights, for an interface.")
-      .def_readonly("name", &fe::NodeSet::name)
+      .def_readonly("name", &fe::NodeSet::name, "For messages, \"edge x1\".")
       .def_property_readonly(
           "points", [](const fe::NodeSet& s) { return s.points; }, "Places in the mesh's points.")
       .def_readonly("weights", &fe::NodeSet::weights, "One per node, > 0.");
@@ -78,12 +85,13 @@ void bind_node_sets(py::module_& m) {
 
 void bind_couplings(py::module_& m) {
   py::class_<fe::Legendre>(m, "Legendre", "Legendre polynomials along an edge.")
-      .def_readonly("count", &fe::Legendre::count);
+      .def_readonly("count", &fe::Legendre::count,
+                    "Number of polynomials, of degrees 0 to count - 1.");
   m.def("legendre", &fe::legendre, "m"_a,
         "m Legendre polynomials of degrees 0 to m - 1 for each displacement of an edge and its "
         "rotation about it.");
   py::class_<fe::Coupling>(m, "Coupling", "How an interface follows its nodes.")
-      .def_readonly("nodes", &fe::Coupling::nodes)
+      .def_readonly("nodes", &fe::Coupling::nodes, "The NodeSet.")
       .def_readonly("count", &fe::Coupling::count, "Polynomials of shapes and moments.");
   m.def("rigid", &fe::rigid, "nodes"_a,
         "The nodes move as one rigid body (RBE2): frequencies rise.");

@@ -33,73 +33,94 @@ void bind_scene(py::module_& m) {
           "outputs"_a = std::vector<std::string>(), "band_hz"_a = std::array<double, 2>{0, 0},
           "accuracy"_a = 1e-3, "damping_floor"_a = 0.002, "bound"_a = "estimate",
           "whole_up_to"_a = 2000, "keep_structure"_a = true, "balance_up_to"_a = 800)
-      .def_readonly("band_hz", &Scene::band_hz)
-      .def_readonly("accuracy", &Scene::accuracy)
-      .def_readonly("damping_floor", &Scene::damping_floor);
+      .def_readonly("band_hz", &Scene::band_hz,
+                    "(lower, upper) end of the band [Hz]; (0, 0): static gain only.")
+      .def_readonly("accuracy", &Scene::accuracy,
+                    "Largest error of any pair, relative to its own peak.")
+      .def_readonly("damping_floor", &Scene::damping_floor,
+                    "Damping ratio of the ray on which errors are measured.");
 }
 
 void bind_results(py::module_& m) {
   py::class_<ErrorBound>(m, "ErrorBound", "Error of a reduced system over the scene's band.")
       .def_readonly("pairs", &ErrorBound::pairs, "outputs x inputs, relative.")
       .def_readonly("peak", &ErrorBound::peak, "|error| <= pairs * peak.")
-      .def_readonly("worst", &ErrorBound::worst)
+      .def_readonly("worst", &ErrorBound::worst, "The largest of `pairs`.")
       .def_readonly("hertz", &ErrorBound::hertz, "Where it was found [Hz].")
-      .def_property_readonly("kind", [](const ErrorBound& b) { return bound_name(b.kind); });
+      .def_property_readonly(
+          "kind", [](const ErrorBound& b) { return bound_name(b.kind); },
+          "\"theorem\" or \"estimate\".");
   py::class_<ReductionStep>(m, "ReductionStep", "One step of the reduction.")
-      .def_readonly("name", &ReductionStep::name)
-      .def_readonly("before", &ReductionStep::before)
-      .def_readonly("after", &ReductionStep::after)
-      .def_readonly("error", &ReductionStep::error)
-      .def_readonly("text", &ReductionStep::text);
+      .def_readonly("name", &ReductionStep::name,
+                    "\"structure\", \"bodies\", \"symmetry\", \"whole\"; \"kept\", \"balanced\".")
+      .def_readonly("before", &ReductionStep::before,
+                    "Second-order coordinates before it; of \"kept\" and \"balanced\": states.")
+      .def_readonly("after", &ReductionStep::after, "The same after it.")
+      .def_readonly("error", &ReductionStep::error, "Its error, relative as in Scene; 0: exact.")
+      .def_readonly("text", &ReductionStep::text, "Description.");
   py::class_<KeptMode>(m, "KeptMode", "A coordinate of the reduced system.")
       .def_readonly("hertz", &KeptMode::hertz, "[Hz]")
-      .def_readonly("damping", &KeptMode::damping)
-      .def_readonly("blocks", &KeptMode::blocks);
+      .def_readonly("damping", &KeptMode::damping, "Damping ratio; 0 of motions without stiffness.")
+      .def_readonly("blocks", &KeptMode::blocks,
+                    "[(block, share of its elastic energy)], largest first, down to 5 %.");
   py::class_<SecondOrderModel>(m, "SecondOrderModel",
                                "M qdd + D qd + K q = B u, y = C q + C_rate qd + C_accel qdd + "
                                "direct u, M = I, K diagonal.")
-      .def_readonly("M", &SecondOrderModel::M)
-      .def_readonly("D", &SecondOrderModel::D)
-      .def_readonly("K", &SecondOrderModel::K)
-      .def_readonly("B", &SecondOrderModel::B)
-      .def_readonly("C", &SecondOrderModel::C)
-      .def_readonly("C_rate", &SecondOrderModel::C_rate)
-      .def_readonly("C_accel", &SecondOrderModel::C_accel)
-      .def_readonly("direct", &SecondOrderModel::direct)
-      .def("transfer", &SecondOrderModel::transfer, "s"_a);
+      .def_readonly("M", &SecondOrderModel::M, "r x r, the identity.")
+      .def_readonly("D", &SecondOrderModel::D, "r x r [rad/s].")
+      .def_readonly("K", &SecondOrderModel::K, "r x r, diagonal [rad^2/s^2].")
+      .def_readonly("B", &SecondOrderModel::B, "r x inputs.")
+      .def_readonly("C", &SecondOrderModel::C, "outputs x r, of q.")
+      .def_readonly("C_rate", &SecondOrderModel::C_rate, "outputs x r, of qd.")
+      .def_readonly("C_accel", &SecondOrderModel::C_accel, "outputs x r, of qdd.")
+      .def_readonly("direct", &SecondOrderModel::direct, "outputs x inputs.")
+      .def("transfer", &SecondOrderModel::transfer, "s"_a,
+           "outputs x inputs at s [rad/s], complex.");
   m.def(
       "port_hamiltonian", [](const SecondOrderModel& model) { return port_hamiltonian(model); },
       "model"_a, "A reduced structure as a port-Hamiltonian system.");
   py::class_<ModalModel>(m, "ModalModel", "A of 2 x 2 blocks, one per mode; B, C, D.")
-      .def_readonly("A", &ModalModel::A)
-      .def_readonly("B", &ModalModel::B)
-      .def_readonly("C", &ModalModel::C)
-      .def_readonly("D", &ModalModel::D);
+      .def_readonly("A", &ModalModel::A, "List of 2 x 2 matrices, one per mode [rad/s].")
+      .def_readonly("B", &ModalModel::B, "2r x inputs.")
+      .def_readonly("C", &ModalModel::C, "outputs x 2r.")
+      .def_readonly("D", &ModalModel::D, "outputs x inputs.");
 }
 
 void bind_system_of_scene(py::module_& m) {
   py::class_<ReducedSystem>(m, "ReducedSystem",
                             "The reduced system of a scene, and the bound of its error.")
-      .def_property_readonly("order", &ReducedSystem::order)
-      .def_property_readonly("inputs", [](const ReducedSystem& r) { return r.inputs(); })
-      .def_property_readonly("outputs", [](const ReducedSystem& r) { return r.outputs(); })
+      .def_property_readonly("order", &ReducedSystem::order, "Number of states of state_space().")
+      .def_property_readonly(
+          "inputs", [](const ReducedSystem& r) { return r.inputs(); },
+          "Names of the scene's scalar inputs, in the diagram's order.")
+      .def_property_readonly(
+          "outputs", [](const ReducedSystem& r) { return r.outputs(); },
+          "Names of the scene's scalar outputs, in the diagram's order.")
       .def_property_readonly(
           "full", [](const ReducedSystem& r) { return r.full(); },
           "The full system with the scene's inputs and outputs.")
       .def("transfer", &ReducedSystem::transfer, "s"_a, Unlocked(), "outputs x inputs, complex.")
-      .def("state_space", &ReducedSystem::state_space, Unlocked())
+      .def("state_space", &ReducedSystem::state_space, Unlocked(),
+           "The dense StateSpace; states \"mode1\", \"mode1_rate\", ...; of balanced models "
+           "\"kept1\", ...")
       .def("second_order", &ReducedSystem::second_order, Unlocked(), "M, D, K kept.")
       .def("modal", &ReducedSystem::modal, Unlocked(), "2 x 2 blocks.")
-      .def_property_readonly("bound", [](const ReducedSystem& r) { return r.bound(); })
-      .def_property_readonly("steps", [](const ReducedSystem& r) { return r.steps(); })
-      .def_property_readonly("modes", [](const ReducedSystem& r) { return r.modes(); })
-      .def_property_readonly("notes", [](const ReducedSystem& r) { return r.notes(); })
+      .def_property_readonly(
+          "bound", [](const ReducedSystem& r) { return r.bound(); }, "Its ErrorBound.")
+      .def_property_readonly(
+          "steps", [](const ReducedSystem& r) { return r.steps(); },
+          "List of ReductionStep, in order.")
+      .def_property_readonly(
+          "modes", [](const ReducedSystem& r) { return r.modes(); }, "List of KeptMode.")
+      .def_property_readonly(
+          "notes", [](const ReducedSystem& r) { return r.notes(); },
+          "Warnings: bodies whose own data end below 1.5 times the band.")
       .def("__str__", [](const ReducedSystem& r) { return to_string(r); });
   py::class_<WhatIf>(m, "WhatIf", "One line of what_if.")
-      .def_readonly("accuracy", &WhatIf::accuracy)
-      .def_readonly("order", &WhatIf::order)
-      .def_readonly("bound", &WhatIf::bound)
-      .def_readonly("system", &WhatIf::system);
+      .def_readonly("accuracy", &WhatIf::accuracy, "Required.")
+      .def_readonly("order", &WhatIf::order, "States.")
+      .def_readonly("bound", &WhatIf::bound, "Reached, relative as in Scene.")
+      .def_readonly("system", &WhatIf::system, "The ReducedSystem.");
 }
 
 }  // namespace

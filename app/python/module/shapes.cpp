@@ -12,17 +12,19 @@ void bind_mode_shapes(py::module_& m) {
                         "Motion of all points in one mode: the real part of motion exp(s t), in "
                         "the frame of the first point of each assembly; a column per point.")
       .def_readonly("index", &ModeShape::index, "Of its pole in system.poles().")
-      .def_readonly("pole", &ModeShape::pole)
+      .def_readonly("pole", &ModeShape::pole, "The Pole itself.")
       .def_readonly("translation", &ModeShape::translation,
                     "3 x points, complex [m]; the largest is 1 m.")
       .def_readonly("rotation", &ModeShape::rotation, "3 x points, complex [rad].");
   py::class_<ModeShapes>(m, "ModeShapes", "The points of a structure, and their motion in modes.")
-      .def_readonly("points", &ModeShapes::points)
+      .def_readonly("points", &ModeShapes::points,
+                    "List of StructurePoint: the columns of the motions.")
       .def_readonly("lines", &ModeShapes::lines,
                     "Pairs of points: from a body's parent point to each of its children.")
       .def_readonly("modes", &ModeShapes::modes, "Of the poles asked for that have a shape.")
       .def_readonly("without", &ModeShapes::without, "The others, with the reason.")
-      .def_readonly("notes", &ModeShapes::notes);
+      .def_readonly("notes", &ModeShapes::notes,
+                    "Blocks without positions and unknown distances, in words.");
   m.def(
       "mode_shapes",
       [](const System& s, const std::vector<int>& poles) { return mode_shapes(s, poles); },
@@ -34,14 +36,16 @@ void bind_mode_shapes(py::module_& m) {
 void bind_bracket(py::module_& m) {
   using Interval = InterfaceBracket::Interval;
   py::class_<Interval>(m, "Interval", "An interval of a frequency or a compliance.")
-      .def_readonly("below", &Interval::below)
-      .def_readonly("above", &Interval::above)
-      .def_property_readonly("width", &Interval::width);
+      .def_readonly("below", &Interval::below, "Lower end [unit of the quantity].")
+      .def_readonly("above", &Interval::above, "Upper end [unit of the quantity].")
+      .def_property_readonly("width", &Interval::width, "above - below.");
   py::class_<InterfaceBracket>(m, "InterfaceBracket",
                                "What the lumping of interfaces costs; printed as a table.")
       .def_readonly("omega", &InterfaceBracket::omega, "Intervals, ascending [rad/s].")
       .def_readonly("compliance", &InterfaceBracket::compliance, "[m/N, rad/(N m)]")
-      .def_readonly("transfer_difference", &InterfaceBracket::transfer_difference)
+      .def_readonly("transfer_difference", &InterfaceBracket::transfer_difference,
+                    "Largest difference of an entry of both transfers, relative to its largest "
+                    "value: an estimate.")
       .def("__str__", [](const InterfaceBracket& b) { return to_string(b); });
   m.def(
       "interface_bracket",

@@ -156,7 +156,7 @@ void add_to_diagram(py::module_& m) {
           [](const DiagramPtr& d, std::string name, const Spec& spec) {
             return PortsOf<typename Spec::Handle>{d, d->add(std::move(name), spec, here())};
           },
-          "name"_a, "block"_a);
+          "name"_a, "block"_a, "Adds a block of this name and returns its ports.");
 }
 
 }  // namespace titop::python

@@ -66,9 +66,11 @@ void bind_simulate(py::module_& m) {
       .def_readonly("y", &Trajectory::y, "outputs x times.")
       .def_readonly("x", &Trajectory::x, "states x times, or their last column alone.")
       .def_readonly("error", &Trajectory::error, "Estimated relative error per output.")
-      .def_property_readonly("stepper", [](const Trajectory& t) { return to_string(t.stepper); })
-      .def_readonly("states", &Trajectory::states)
-      .def_readonly("outputs", &Trajectory::outputs);
+      .def_property_readonly(
+          "stepper", [](const Trajectory& t) { return to_string(t.stepper); },
+          "The one used: \"exact\", \"midpoint\" or \"rk4\".")
+      .def_readonly("states", &Trajectory::states, "Names of the rows of x.")
+      .def_readonly("outputs", &Trajectory::outputs, "Names of the rows of y.");
   m.def("simulate", &run, "system"_a, "excitation"_a, py::kw_only(), "step"_a, "until"_a,
         "stepper"_a = "automatic", "x0"_a = Numbers(), "keep_states"_a = false, "accuracy"_a = 0.01,
         "The response from x0 (states in the order of System.states; none: 0) to the excitation, "

@@ -93,9 +93,15 @@ void def_models(SystemType& type) {
 
 void def_notes(SystemType& type) {
   type.def_property_readonly("order", &System::order, "States, before minimal realization.")
-      .def_property_readonly("states", [](const System& s) { return s.states(); })
-      .def_property_readonly("inputs", [](const System& s) { return s.inputs(); })
-      .def_property_readonly("outputs", [](const System& s) { return s.outputs(); })
+      .def_property_readonly(
+          "states", [](const System& s) { return s.states(); },
+          "Names of the states before minimal realization, \"z1.stretch\".")
+      .def_property_readonly(
+          "inputs", [](const System& s) { return s.inputs(); },
+          "Names of the scalar inputs, \"U(3)\".")
+      .def_property_readonly(
+          "outputs", [](const System& s) { return s.outputs(); },
+          "Names of the scalar outputs, \"y(1)\".")
       .def("input", &System::input, "name"_a,
            "Column of this scalar input, \"ref(3)\", in transfers and in u.")
       .def("output", &System::output, "name"_a, "Row of this scalar output in transfers and in y.")
@@ -107,7 +113,8 @@ void def_notes(SystemType& type) {
             return result;
           },
           "{name: value} of the diagram's parameters.")
-      .def_property_readonly("notes", [](const System& s) { return s.notes(); })
+      .def_property_readonly(
+          "notes", [](const System& s) { return s.notes(); }, "List of Note: the lines of log().")
       .def_property_readonly(
           "dense_notes", [](const System& s) { return s.dense_notes(); },
           "Notes on the dense model; those of dense_log().")
@@ -136,14 +143,14 @@ void bind_descriptor(py::module_& m) {
                          "states, then the interface unknowns. The matrices are those of "
                          "scipy.sparse: reading them needs SciPy.")
       .def_readonly("E", &Descriptor::E, "diag(I, 0).")
-      .def_readonly("A", &Descriptor::A)
-      .def_readonly("B", &Descriptor::B)
-      .def_readonly("C", &Descriptor::C)
-      .def_readonly("D", &Descriptor::D)
+      .def_readonly("A", &Descriptor::A, "(n + unknowns) x (n + unknowns), sparse.")
+      .def_readonly("B", &Descriptor::B, "(n + unknowns) x inputs, sparse.")
+      .def_readonly("C", &Descriptor::C, "outputs x (n + unknowns), sparse.")
+      .def_readonly("D", &Descriptor::D, "outputs x inputs, sparse.")
       .def_readonly("states", &Descriptor::states, "Number of states.")
       .def_readonly("names", &Descriptor::names, "Of v.")
-      .def_readonly("inputs", &Descriptor::inputs)
-      .def_readonly("outputs", &Descriptor::outputs);
+      .def_readonly("inputs", &Descriptor::inputs, "Names of the scalars of u.")
+      .def_readonly("outputs", &Descriptor::outputs, "Names of the scalars of y.");
 }
 
 }  // namespace

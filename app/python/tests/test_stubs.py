@@ -1,8 +1,9 @@
 """Every public name of the module, and of its classes, has its type in the stubs, and nothing
-else; and every function has a docstring."""
+else; and every class, function, method and property has a docstring."""
 import ast
 import inspect
 import pathlib
+import re
 import unittest
 
 import titop
@@ -37,14 +38,28 @@ def public(module):
             if not name.startswith("_") and (inspect.isclass(value) or callable(value))}
 
 
+def texts(member, name):
+    """The docstrings of a member; of pybind11's functions each overload's, without its signature."""
+    text = inspect.getdoc(member) or ""
+    signature = rf"(?:^|\n)(?:\d+\. )?{name}\(.*\) -> .*"
+    return re.split(signature, text)[1:] if re.match(rf"{name}\(", text) else [text]
+
+
 class Stubs(unittest.TestCase):
+    def check_text(self, owner, name, member):
+        for text in texts(member, name):
+            self.assertRegex(text, r"\w|\[", f"{owner}.{name} has no docstring")
+
     def compare(self, module, file):
         stub = stub_of(file)
         self.assertEqual(set(stub), set(public(module)))
         for name, value in public(module).items():
-            self.assertTrue(inspect.getdoc(value), f"{name} has no docstring")
+            self.check_text(module.__name__, name, value)
             if inspect.isclass(value):
                 members = set(vars(value)) - OWN
+                for member in members:
+                    if not member.startswith("_"):
+                        self.check_text(name, member, vars(value)[member])
                 if value is titop.Mistake:
                     members |= {"code", "message", "details", "hint", "places"}
                 elif value is titop.Error:
