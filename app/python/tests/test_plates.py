@@ -72,6 +72,77 @@ class Meshes(unittest.TestCase):
         self.assertEqual(len(fe.segment(mesh, [0, 0, 0], [0.8, 0, 0]).points), 5)
 
 
+class ClosedForms(unittest.TestCase):
+    def test_simply_supported_square(self):
+        """D = 1, rho h = 1: omega = pi^2 (i^2 + j^2), from above, by less than the error of k half
+        waves along 8 cubic elements, (k pi / 8)^4 / 1440."""
+        square = titop.Plate(a=1, b=1, thickness=0.01, material=titop.Material(rho=100),
+                             D=titop.PlateStiffness(1, 0.3, 1, 0.35))
+        mesh = fe.plate_mesh(square)
+        free = []
+        for row, name in enumerate(mesh.dofs):
+            point, component = name.rsplit(".", 1)
+            x, y = (place in (0, 1) for place in mesh.points[point][:2])
+            if not (x and component in ("z", "rx") or y and component in ("z", "ry")):
+                free.append(row)
+        inverse = np.linalg.inv(np.linalg.cholesky(mesh.M[np.ix_(free, free)]))
+        omega = np.sqrt(np.linalg.eigvalsh(inverse @ mesh.K[np.ix_(free, free)] @ inverse.T))
+        for found, (i, j) in zip(omega, ((1, 1), (1, 2), (2, 1), (2, 2))):
+            error = found / (math.pi**2 * (i * i + j * j)) - 1
+            self.assertGreater(error, 0)
+            self.assertLess(error, (max(i, j) * math.pi / 8)**4 / 1440)
+
+    def strip(self, in_plane):
+        """2 m x 0.25 m, held along x = 0, nu = 0: along x a rod of 10 linear elements."""
+        strip = titop.Plate(a=2, b=0.25, thickness=0.002, elements=[10, 2], in_plane=in_plane,
+                            material=titop.Material(E=70e9, nu=0, rho=2700))
+        mesh = fe.plate_mesh(strip)
+        mesh = fe.with_interface(mesh, "root", fe.rigid(fe.edge(mesh, "x0")))
+        mesh = fe.with_interface(mesh, "tip", fe.average(fe.edge(mesh, "x1")))
+        return strip, fe.modal_data(mesh, "root", ["tip"])
+
+    def test_membrane_is_a_rod(self):
+        """Waves k along linear elements of length h with their consistent mass: omega^2 = (E / rho)
+        6 (1 - cos kh) / ((2 + cos kh) h^2)."""
+        _, membrane = self.strip("membrane")
+        for i in range(1, 5):
+            c, h = math.cos((i - 0.5) * math.pi / 10), 0.2
+            omega = math.sqrt(70e9 / 2700 * 6 * (1 - c) / (2 + c)) / h
+            self.assertLess(abs(membrane.omega / omega - 1).min(), 1e-9)
+        _, rigid = self.strip("rigid")
+        self.assertEqual(len(membrane.omega), len(rigid.omega) + 2 * 30)
+        for omega in rigid.omega[:8]:  # bending is as before
+            self.assertLess(abs(membrane.omega / omega - 1).min(), 1e-9)
+
+    def test_membrane_in_a_diagram(self):
+        """F along the strip moves its end by F a / (E h b)."""
+        strip, data = self.strip("membrane")
+        d = titop.Diagram("strip")
+        body = d.add("strip", titop.FlexibleBody(data))
+        titop.ground(body)
+        body.child["tip"].force += d.input("F", 6)
+        d.output["x"] = body.child["tip"].position
+        gain = titop.compile(d).static_gain()[0, 0]
+        exact = strip.a / (strip.material.E * strip.thickness * strip.b)
+        self.assertLess(abs(gain / exact - 1), 1e-9)
+
+    def test_plate_is_readable(self):
+        strip, _ = self.strip("membrane")
+        self.assertEqual((strip.in_plane, strip.D, strip.A), ("membrane", None, None))
+        self.assertEqual((strip.material.nu, strip.material.G), (0, None))
+        laminate = titop.Plate(a=1, b=1, thickness=0.01, material=titop.Material(rho=100),
+                               D=titop.PlateStiffness(1, 0.3, 2, 0.35), in_plane="membrane",
+                               A=titop.MembraneStiffness(5, 1.1, 3, 0.8))
+        self.assertEqual((laminate.D.D22, laminate.A.A11, laminate.A.A66), (2, 5, 0.8))
+        self.assertEqual(plate.in_plane, "rigid")
+        with self.assertRaisesRegex(ValueError, "in_plane is one of 'rigid', 'membrane'"):
+            titop.Plate(a=1, b=1, thickness=0.01, material=material, in_plane="elastic")
+        with self.assertRaisesRegex(titop.Error, "A and no D"):
+            fe.plate_mesh(titop.Plate(a=1, b=1, thickness=0.01, material=material,
+                                      in_plane="membrane",
+                                      A=titop.MembraneStiffness(5, 1.1, 3, 0.8)))
+
+
 class Lines(unittest.TestCase):
     def hinged(self, k):
         d = titop.Diagram("panels")
@@ -94,6 +165,16 @@ class Lines(unittest.TestCase):
         stiff, welded = self.hinged(1e6).poles()[0].omega, self.welded().poles()[0].omega
         self.assertLess(abs(stiff / welded - 1), 1e-2)
         self.assertLess(self.hinged(1).poles()[0].omega, welded)
+
+    def test_soft_hinge_carries_a_rigid_panel(self):
+        """The second panel swings about the line, m a^2 omega^2 / 3 = k, less what bending yields.
+        Under the hinge's moment M and the second panel's force 3 M / (2 a) the first one has the
+        energy M^2 / (2 E I) times the integral of (1 + 3 x / (2 a))^2, 3.25 a; the second one, of a
+        moment that falls from M to 0, less than a. A plate has E I to E I / (1 - nu^2)."""
+        k, a, m, EI = 1e-3, 0.8, 2700 * 0.8 * 0.2 * 0.002, 70e9 * 0.2 * 0.002**3 / 12
+        lowered = 1 - self.hinged(k).poles()[0].omega / math.sqrt(3 * k / (m * a**2))
+        self.assertGreater(lowered, 3.25 / 2 * k * a / EI * (1 - 0.33**2))
+        self.assertLess(lowered, 4.25 / 2 * k * a / EI)
 
     def test_shapes(self):
         d = titop.Diagram("d")
