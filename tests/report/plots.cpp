@@ -1,16 +1,21 @@
-// Plots as SVG files by themselves.
+// Plots as SVG files by themselves; curves are compared with closed forms at the ticks' numbers.
 #include <doctest/doctest.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <titop/titop.hpp>
 
+#include "curves.hpp"
 #include "markup.hpp"
 #include "support/folder.hpp"
 #include "support/mistakes.hpp"
 
 using namespace titop;
 using namespace titop_test;
+using std::numbers::pi;
 
 namespace {
 
@@ -27,27 +32,20 @@ System first_order() {
   return compile(d);
 }
 
-std::string fault(const std::string& svg) {
-  return complaint("<!DOCTYPE html>\n<html>" + svg + "</html>");
+/// G(s) = V diag(1 / (s + 1), 3 / (s + 5)) V', V a rotation.
+System two_gains() {
+  const Eigen::Matrix2d V = Eigen::Rotation2Dd(0.4).toRotationMatrix();
+  Diagram d{"two gains"};
+  auto g = d.add("g", Lti{.A = Eigen::Vector2d(-1, -5).asDiagonal(),
+                          .B = V.transpose(),
+                          .C = V * Eigen::Vector2d(1, 3).asDiagonal()});
+  g.in = d.input("u", 2);
+  d.output("y", 2) = g.out;
+  return compile(d);
 }
 
-/// Points of all curves (without marks).
-std::vector<std::pair<double, double>> points(const std::string& svg) {
-  std::vector<std::pair<double, double>> list;
-  for (const std::string& frame : between(svg, "<svg x=", "</svg>"))
-    for (const std::string& path : between(frame, "<path class=\"curve c1\" d=\"", "\"")) {
-      std::string text = path;
-      for (char& c : text)
-        if (c == 'M' || c == 'L') c = ' ';
-      const char* at = text.c_str();
-      for (char* end = nullptr;; at = end) {
-        const double x = std::strtod(at, &end);
-        if (end == at) break;
-        const double y = std::strtod(end, &end);
-        list.emplace_back(x, y);
-      }
-    }
-  return list;
+std::string fault(const std::string& svg) {
+  return complaint("<!DOCTYPE html>\n<html>" + svg + "</html>");
 }
 
 }  // namespace
@@ -56,7 +54,7 @@ TEST_CASE("a Nyquist curve is where L is: k / s on the imaginary axis") {
   const std::string svg = plot_nyquist(loop(first_order(), "law"));
   CHECK(fault(svg) == "");
   CHECK(svg.find("xmlns=\"http://www.w3.org/2000/svg\"") != std::string::npos);
-  const auto curve = points(svg);
+  const auto curve = curve_of(frames_of(svg).front());
   CHECK(curve.size() >= 2);
   for (const auto& [x, y] : curve) {
     CHECK(std::abs(x - 220) <= 0.11);  // 0 in a frame of 440 from -3 to 3
@@ -80,20 +78,36 @@ TEST_CASE("poles and zeros are marks: their number and places") {
   CHECK(svg.find("a mode") != std::string::npos);
 }
 
-TEST_CASE("Bode, step and singular values; names are escaped") {
-  const System system = first_order();
-  const std::string bode = plot_bode(system, "y", "r", {.band_hz = {0.01, 10}});
-  const std::string step = plot_step(system, "error < 1", "r", {.until = 3});
-  const std::string sigma = plot_sigma(system);
-  for (const std::string* svg : {&bode, &step, &sigma}) {
-    CHECK(fault(*svg) == "");
-    CHECK(points(*svg).size() >= 20);
-  }
-  CHECK(count(bode, "<svg x=") == 2);
-  CHECK(step.find("error &lt; 1") != std::string::npos);
-  // The gain falls all along the band.
-  const auto curve = points(bode);
-  CHECK(curve.front().second < curve[curve.size() / 3].second);
+TEST_CASE("Bode: 1 / (s + 2), magnitude and phase at every point of the curves") {
+  const std::string svg = plot_bode(first_order(), "y", "r", {.band_hz = {0.01, 10}});
+  CHECK(fault(svg) == "");
+  CHECK(frames_of(svg).size() == 2);
+  CHECK(distance(svg, 0, "c1", true, true,
+                 [](double hertz) { return 1 / std::hypot(2 * pi * hertz, k); }) <= kRounded);
+  CHECK(distance(svg, 1, "c1", true, false, [](double hertz) {
+          return -std::atan(2 * pi * hertz / k) * 180 / pi;
+        }) <= kRounded);
+}
+
+TEST_CASE("step: exp(-2 t) at every point of the curve; names are escaped") {
+  const std::string svg = plot_step(first_order(), "error < 1", "r", {.until = 3});
+  CHECK(fault(svg) == "");
+  CHECK(svg.find("error &lt; 1") != std::string::npos);
+  CHECK(distance(svg, 0, "c1", false, false, [](double t) { return std::exp(-k * t); }) <=
+        kRounded);
+}
+
+TEST_CASE("singular values of two directions: the larger gain first, also where they change") {
+  const std::string svg = plot_sigma(two_gains(), {.band_hz = {0.01, 10}});
+  CHECK(fault(svg) == "");
+  const auto one = [](double hertz) { return 1 / std::hypot(2 * pi * hertz, 1); };
+  const auto other = [](double hertz) { return 3 / std::hypot(2 * pi * hertz, 5); };
+  CHECK(one(0.01) > other(0.01));
+  CHECK(one(10) < other(10));
+  CHECK(distance(svg, 0, "c1", true, true, [&](double f) { return std::max(one(f), other(f)); }) <=
+        kRounded);
+  CHECK(distance(svg, 0, "c2", true, true, [&](double f) { return std::min(one(f), other(f)); }) <=
+        kRounded);
 }
 
 TEST_CASE("files, and mistakes") {
