@@ -37,6 +37,13 @@ Lti first_order(double gain, double pole, double corner) {
 /// The law of all three axes.
 Lti law_block() { return first_order(kd * actuator, (kp - kd * actuator) * actuator, actuator); }
 
+/// The delay of all three torques, by its Pade approximation of one state.
+Lti late_block() {
+  const Lti one = pade(delay, 1);
+  const MatrixXd I = MatrixXd::Identity(3, 3);
+  return {.A = one.A(0, 0) * I, .B = one.B(0, 0) * I, .C = one.C(0, 0) * I, .D = one.D(0, 0) * I};
+}
+
 Diagram controlled(const FlexibleBody& beam) {
   Diagram d{"controlled"};
   auto T = d.input("T", 3);  // disturbance on the hub [N m]
@@ -44,7 +51,7 @@ Diagram controlled(const FlexibleBody& beam) {
   auto hub = d.add("hub", scenes::hub_spec);
   auto boom1 = d.add("boom1", beam), boom2 = d.add("boom2", beam);
   auto law = d.add("law", law_block());
-  auto late = d.add("late", first_order(-1, 4 / delay, 2 / delay));
+  auto late = d.add("late", late_block());
   mount(boom1, hub.child("C1"), Rotation::about(scenes::turn1, scenes::angle1));
   auto drive = hinge(d, "drive", boom2, hub.child("C2"),
                      Rotation::about(scenes::turn2, scenes::angle2), scenes::hinge_axis);
@@ -97,8 +104,8 @@ DiscreteModel sampled_law(double period) {
 /// The attitude under a torque of 1 N m about z from time 0 on, with the loop of the diagram open.
 Trajectory pushed(const System& satellite) {
   const DiscreteModel law = sampled_law(0.01);
-  return simulate(satellite.update({{"gain", 0}}),
-                  Excitation::sampled(law, Excitation::step(Eigen::Vector3d(0, 0, 1))),
+  const Excitation push = Excitation::step(input_values(satellite, {{"T(3)", 1}}));
+  return simulate(satellite.update({{"gain", 0}}), Excitation::sampled(law, push),
                   {.step = 0.005, .until = 60});
 }
 

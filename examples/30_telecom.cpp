@@ -141,7 +141,7 @@ MatrixXd by_flight_code(const System& open, int steps) {
 /// The same by `simulate` with the discrete law.
 MatrixXd by_simulation(const System& open, int steps) {
   const DiscreteModel law = discretize(compile(telecom_attitude_law()).state_space(), period);
-  const VectorXd torque = (VectorXd(6) << 0.1, 0.1, 0.1, 0, 0, 0).finished();
+  const VectorXd torque = input_values(open, {{"T(1)", 0.1}, {"T(2)", 0.1}, {"T(3)", 0.1}});
   return simulate(open, Excitation::sampled({law.model, law.period}, Excitation::step(torque)),
                   {.step = period, .until = steps * period})
       .y;

@@ -14,6 +14,12 @@ def first_order(gain, pole, corner):
     return titop.Lti(A=-corner * I, B=I, C=pole * I, D=gain * I)
 
 
+def late_block():
+    """The delay of all three torques, by its Pade approximation of one state."""
+    one, I = titop.pade(delay, 1), np.eye(3)
+    return titop.Lti(A=one.A * I, B=one.B * I, C=one.C * I, D=one.D * I)
+
+
 def controlled(beam):
     d = titop.Diagram("controlled")
     T = d.input("T", 3)  # disturbance on the hub [N m]
@@ -21,7 +27,7 @@ def controlled(beam):
     hub = d.add("hub", titop.RigidBody(**satellite.hub_spec))
     boom1, boom2 = d.add("boom1", beam), d.add("boom2", beam)
     law = d.add("law", first_order(kd * actuator, (kp - kd * actuator) * actuator, actuator))
-    late = d.add("late", first_order(-1, 4 / delay, 2 / delay))
+    late = d.add("late", late_block())
     titop.mount(boom1, hub.child["C1"], satellite.turn1)
     drive = titop.hinge(d, "drive", boom2, hub.child["C2"], satellite.turn2, satellite.hinge_axis)
     drive.torque = satellite.kappa * drive.angle + satellite.c * drive.rate

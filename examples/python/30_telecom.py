@@ -135,8 +135,8 @@ print_margins("the law every 0.1 s", sampled)
 
 # As by the flight code: a torque of 0.1 N m about each axis from time 0 on.
 law = titop.discretize(titop.compile(attitude_law()).state_space(), period)
-t = titop.simulate(system.update({"gain": 0.0}),
-                   titop.Excitation.sampled(law, titop.Excitation.step([0.1, 0.1, 0.1, 0, 0, 0])),
+push = titop.Excitation.step(titop.input_values(system, {"T(1)": 0.1, "T(2)": 0.1, "T(3)": 0.1}))
+t = titop.simulate(system.update({"gain": 0.0}), titop.Excitation.sampled(law, push),
                    step=period, until=300)
 for k in 100, 300, 1000, 3000:
     print("  t = {:3.0f} s  {:5.2f} {:5.2f} {:5.2f} mrad".format(k * period, *(1e3 * t.y[:, k])))
