@@ -49,6 +49,19 @@ struct ChildRank {
   std::vector<std::string> blocked;  ///< "rx", or a combination "y - 0.5 rz" that does not move
 };
 ChildRank child_rank(const ModalData& data, const ModalChild& child);
+
+/// The same of a whole line: the six channels of its child, none for the line of the parent, and
+/// one per shape. `weld` of a child's line to a point locks all of them, `ground` of a parent's
+/// line its shapes. With fewer modes than channels the rank is their number.
+struct LineRank {
+  std::string line;
+  int channels = 0;
+  int rank = 0;                      ///< 0..channels
+  double condition = 0;              ///< of the rows scaled to length 1, without the blocked ones
+  std::vector<std::string> blocked;  ///< "z3", or a combination "z - 0.5 z2" that does not move
+};
+LineRank line_rank(const ModalData& data, const ModalLine& line);
+
 /// "rx", or a combination "y - 0.5 rz".
 std::string combination(const Vector6& w);
 
@@ -82,6 +95,7 @@ struct ModalReport {
   std::vector<ChildRank> children;
   EffectiveMass effective;
   std::vector<std::string> implausible;
+  std::vector<LineRank> lines = {};
 };
 /// All of the above. Cost 100 N.
 ModalReport modal_report(const ModalData& data);

@@ -101,7 +101,7 @@ void bind_meshes(py::module_& m) {
       "mesh"_a, "Mass properties and rigid-body check as text.");
   m.def(
       "modal_report", [](const ModalData& data) { return to_string(modal_report(data)); }, "data"_a,
-      "Mass, residual mass, children and effective masses as text.");
+      "Mass, residual mass, rank of children and lines, effective masses as text.");
 }
 
 }  // namespace titop::python
