@@ -41,13 +41,27 @@ Turned turned(const LinePort& a, const LinePort& b, const Matrix3d& T, int axis)
   return {static_cast<int>(to), T(to, axis) > 0 ? 1.0 : -1.0};
 }
 
-/// The shape of b that is the shape of a in frame b, and its sign: P_k(-s) = (-1)^k P_k(s).
-std::pair<LineShape, double> shape_in(const LinePort& a, const LinePort& b, const Matrix3d& T,
-                                      const LineShape& shape) {
+/// A shape of b, times a factor.
+struct ShapeTerm {
+  LineShape shape;
+  double factor;
+};
+
+/// The shape of a as a sum of b's. P_k(-s) = (-1)^k P_k(s); a displacement across lines that meet
+/// at an oblique angle is one of two components.
+std::vector<ShapeTerm> terms_in(const LinePort& a, const LinePort& b, const Matrix3d& T,
+                                const LineShape& shape) {
   const Turned along = turned(a, b, T, a.line.axis);
-  const Turned of = turned(a, b, T, shape.component % 3);
   const double flip = along.sign < 0 && shape.degree % 2 == 1 ? -1 : 1;
-  return {{of.axis + (is_rotation(shape) ? 3 : 0), shape.degree}, flip * of.sign};
+  if (is_rotation(shape)) return {{{along.axis + 3, shape.degree}, flip * along.sign}};
+  std::vector<ShapeTerm> terms;
+  for (int c = 0; c < 3; ++c) {
+    const double t = T(c, shape.component);
+    if (std::abs(t) >= 1 - linalg::kMatrixDigits)
+      return {{{c, shape.degree}, t > 0 ? flip : -flip}};
+    if (std::abs(t) > linalg::kMatrixDigits) terms.push_back({{c, shape.degree}, flip * t});
+  }
+  return terms;
 }
 
 bool has_component(const ModalLine& line, int component) {
@@ -71,7 +85,9 @@ bool is_held(const LinePort& a, const LinePort& b, const Matrix3d& T, const Line
   if (is_rotation(shape)) return false;
   const std::optional<int> mine = deflection(a.line), other = deflection(b.line);
   if (mine && other) return std::abs(T(*other, *mine)) < 1 - linalg::kMatrixDigits;
-  return !has_component(b.line, turned(a, b, T, shape.component).axis);
+  return std::ranges::none_of(terms_in(a, b, T, shape), [&](const ShapeTerm& term) {
+    return has_component(b.line, term.shape.component);
+  });
 }
 
 /// Shapes of a that are not held.
@@ -81,15 +97,18 @@ std::vector<LineShape> tied(const LinePort& a, const LinePort& b, const Matrix3d
   return result;
 }
 
-/// True if the tied shapes of both lines are the same.
-bool same_shapes(const LinePort& a, const LinePort& b, const Matrix3d& T) {
-  const std::vector<LineShape> mine = tied(a, b, T), others = tied(b, a, T.transpose());
-  return mine.size() == others.size() && std::ranges::all_of(mine, [&](const LineShape& s) {
-           const LineShape wanted = shape_in(a, b, T, s).first;
-           return std::ranges::any_of(others, [&](const LineShape& t) {
-             return t.component == wanted.component && t.degree == wanted.degree;
-           });
-         });
+bool has_shape(const LinePort& line, const LineShape& shape) {
+  return std::ranges::any_of(line.line.shapes, [&](const LineShape& s) {
+    return s.component == shape.component && s.degree == shape.degree;
+  });
+}
+
+/// True if b has all shapes that the tied ones of a are in its frame.
+bool has_all(const LinePort& a, const LinePort& b, const Matrix3d& T) {
+  return std::ranges::all_of(tied(a, b, T), [&](const LineShape& shape) {
+    return std::ranges::all_of(terms_in(a, b, T, shape),
+                               [&](const ShapeTerm& term) { return has_shape(b, term.shape); });
+  });
 }
 
 void require_same(const LinePort& a, const LinePort& b, const Rotation& T_ba) {
@@ -110,14 +129,14 @@ void require_same(const LinePort& a, const LinePort& b, const Rotation& T_ba) {
                 "to)");
   const Matrix3d T = T_ba.nominal();
   const bool same_axis = turned(a, b, T, a.line.axis).axis == b.line.axis;
-  const bool fits = same_axis && same_shapes(a, b, T);
+  const bool fits = same_axis && has_all(a, b, T) && has_all(b, a, T.transpose());
   if (!fits)
     throw Error(Code::size,
                 fmt::format("line {} along {} has the shapes {}, line {} along {} has {}", a.name,
                             "xyz"[a.line.axis], list_of_shapes(a.line), b.name, "xyz"[b.line.axis],
                             list_of_shapes(b.line)),
                 "give both edges the same number of polynomials, fe::legendre(m), and T_ba between "
-                "their frames");
+                "their frames; plates that meet at an oblique angle the same Plate::in_plane");
 }
 
 void hold_shapes(const LinePort& line, const SourceLine& at) {
@@ -130,6 +149,12 @@ void hold_straight(const LinePort& a, const LinePort& b, const Matrix3d& T, cons
     if (is_held(a, b, T, a.line.shapes[i])) ground(a.shape_ports[i], at);
 }
 
+/// factor * e, of the same quantity if it is 1 or -1.
+Expr scaled(const Expr& e, double factor) {
+  if (factor == 1) return e;
+  return factor == -1 ? e.negated() : e.times(Value(factor));
+}
+
 /// Equal motion and opposite forces of the shapes of both lines; those that the other line cannot
 /// follow are held.
 void tie_shapes(const LinePort& a, const LinePort& b, const Matrix3d& T, bool rotations,
@@ -138,12 +163,15 @@ void tie_shapes(const LinePort& a, const LinePort& b, const Matrix3d& T, bool ro
   for (std::size_t i = 0; i < a.line.shapes.size(); ++i) {
     if (!rotations && is_rotation(a.line.shapes[i])) continue;
     if (is_held(a, b, T, a.line.shapes[i])) continue;
-    const auto [shape, sign] = shape_in(a, b, T, a.line.shapes[i]);
     const DualPort<1>& mine = a.shape_ports[i];
-    const DualPort<1> other = b.shape(shape);
-    const auto signed_by = [sign = sign](const Expr& e) { return sign > 0 ? e : e.negated(); };
-    mine.accel = Rhs(signed_by(other.accel.expr()), at);
-    other.force += Rhs(signed_by(mine.reaction.expr()).negated(), at);
+    Expr motion;
+    for (const auto& [shape, factor] : terms_in(a, b, T, a.line.shapes[i])) {
+      const DualPort<1> other = b.shape(shape);
+      const Expr part = scaled(other.accel.expr(), factor);
+      motion = motion.graph() ? motion.plus(part, 1) : part;
+      other.force += Rhs(scaled(mine.reaction.expr(), factor).negated(), at);
+    }
+    mine.accel = Rhs(motion, at);
   }
 }
 

@@ -56,7 +56,8 @@ void weld(const LinePort& line, const DualPort<6>& site, const Rotation& T_ba = 
 /// shape. T_ba: components in frame a to those in frame b; numbers, no parameter. Panels in one
 /// plane share deflection and slope of the edge. Panels at an angle along it, as of a box, share
 /// its slope, and both hold it straight: the deflection of one is a motion of the other in its
-/// plane, in which a plate is rigid.
+/// plane, in which a plate is rigid. Membranes share all displacements, at any angle; a membrane
+/// and a plate that is rigid in its plane meet at right angles or in one plane.
 ///
 /// The meshes of the edges need not match if m is at most 4: the nodes' cubic functions then
 /// contain the polynomials, both edges move, or are measured, by the same ones, and the scene is
