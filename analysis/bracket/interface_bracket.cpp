@@ -106,6 +106,13 @@ double difference(const System& constrained, const System& released,
   return (size.array() > zero.array()).select(apart.cwiseQuotient(size), 0.0).maxCoeff();
 }
 
+/// Models of other interfaces are not equal to the last digit.
+bool differs(const InterfaceBracket& bracket) {
+  const auto open = [](const Interval& i) { return i.width() != 0; };
+  return std::ranges::any_of(bracket.omega, open) ||
+         std::ranges::any_of(bracket.compliance, open) || bracket.transfer_difference > 0;
+}
+
 }  // namespace
 
 InterfaceBracket interface_bracket(const std::function<Diagram(Lumping)>& scene,
@@ -120,9 +127,15 @@ InterfaceBracket interface_bracket(const std::function<Diagram(Lumping)>& scene,
                   constrained.inputs().size(), constrained.outputs().size(),
                   released.inputs().size(), released.outputs().size()),
       "build the same scene for both, with other couplings alone");
-  return {of_frequencies(constrained, released, options.modes),
-          of_compliances(constrained, released, options.compliances),
-          difference(constrained, released, options.omega)};
+  InterfaceBracket bracket{of_frequencies(constrained, released, options.modes),
+                           of_compliances(constrained, released, options.compliances),
+                           difference(constrained, released, options.omega)};
+  require(differs(bracket) || (bracket.omega.empty() && bracket.compliance.empty()),
+          "no frequency and no compliance differs between constrained and released interfaces",
+          "the scene must use its argument, on interfaces that these modes move: fe::rigid and "
+          "fe::shapes if that is Lumping::constrained, "
+          "fe::average and fe::moments if it is Lumping::released, of several nodes");
+  return bracket;
 }
 
 std::string to_string(const InterfaceBracket& bracket) {

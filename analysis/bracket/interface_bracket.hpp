@@ -45,10 +45,11 @@ struct InterfaceBracket {
 ///
 /// Throws the errors of `scene` and `compile`; bad_value if the two have different inputs or
 /// outputs or numbers of motions without stiffness, or less than `modes` modes, for a pair that
-/// is not there, for real poles (filters, modes damped beyond critical), and if an interval would
-/// be negative: the theorem does not hold for this scene (bodies without most of their modes, laws
-/// in the loop, pairs of different points); singular if a compliance is that of a free structure.
-/// Cost of the poles: O(n^3) for n states, twice.
+/// is not there, for real poles (filters, modes damped beyond critical), if all intervals have the
+/// width 0 (the scene does not use its argument), and if an interval would be negative: the theorem
+/// does not hold for this scene (bodies without most of their modes, laws in the loop, pairs of
+/// different points); singular if a compliance is that of a free structure. Cost of the poles:
+/// O(n^3) for n states, twice.
 ///
 ///     const InterfaceBracket b = interface_bracket([](Lumping l) { return wing(l); });
 InterfaceBracket interface_bracket(const std::function<Diagram(Lumping)>& scene,
