@@ -105,6 +105,15 @@ bool at_limit(const std::vector<FiniteBeam>& beams) {
                              [](const FiniteBeam& b) { return b.elements == kMostElements; });
 }
 
+void require_beams(const Graph& graph) {
+  for (const Node& node : graph.nodes)
+    if (exact_beam(*node.block)) return;
+  throw Error(
+      Code::bad_value, "the diagram has no distributed beam",
+      "put ExactBeam in place of FlexibleBody{Beam}, or call compile(diagram, scene): other "
+      "bodies keep their mesh");
+}
+
 [[noreturn]] void refuse(const ErrorBound& error, const std::string& subject) {
   throw Error(Code::bad_value,
               fmt::format("{} differ from the distributed ones by {:.2g} at {:.4g} Hz ({} by {})",
@@ -129,6 +138,7 @@ std::array<double, 2> accuracies(double whole, double e) {
 
 ReducedBeams reduce_beams(const Diagram& diagram, const Scene& scene, const Options& options) {
   detail::check(scene);
+  require_beams(diagram.graph());
   const Graph graph = detail::restricted(diagram.graph(), scene);
   const System exact(detail::compile_graph(graph, options));
   const FiniteScene finite(graph, scene);

@@ -36,10 +36,10 @@ struct ReducedBeams {
 /// within 1.3 of the least that a search finds, with the same reserve between samples, in each of
 /// 300 random scenes (tests/long/distributed.cpp).
 ///
-/// Throws the errors of compile(diagram, scene) and `compare`; bad_value if the accuracy is not
-/// reached with 200 elements a beam, with the error that is and the beams. Beams without a
-/// counterpart here are those of FlexibleBody: they keep their own mesh. Cost: some compiles and
-/// reductions.
+/// Throws the errors of compile(diagram, scene) and `compare`; bad_value for a diagram without a
+/// distributed beam, and if the accuracy is not reached with 200 elements a beam, with the error
+/// that is and the beams. Beams without a counterpart here are those of FlexibleBody: they keep
+/// their own mesh. Cost: some compiles and reductions.
 ReducedBeams reduce_beams(const Diagram& diagram, const Scene& scene, const Options& options = {});
 
 /// One line per beam, then the error.

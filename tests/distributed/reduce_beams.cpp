@@ -60,6 +60,8 @@ TEST_CASE("compare refuses other inputs, and two models without a state space") 
              {"inputs", "6", "3"}));
   CHECK(says(error_of([&] { compare(exact, exact, kScene); }), Code::not_rational, {"upper"}));
   CHECK(says(error_of([&] { compare(finite, exact, {.band_hz = {2, 1}}); }), Code::bad_value, {}));
+  CHECK(says(error_of([&] { reduce_beams(arm_of(2), kScene); }), Code::bad_value,
+             {"ExactBeam", "FlexibleBody"}));
 }
 
 TEST_CASE("reduce_beams: elements and modes for an accuracy against the distributed beams") {
