@@ -36,8 +36,8 @@ Turned turned(const LinePort& a, const LinePort& b, const Matrix3d& T, int axis)
     throw Error(
         Code::bad_value,
         fmt::format("lines {} and {} meet under axes that are not parallel", a.name, b.name),
-        "T_ba must turn the body's axes into each other: put a mounting rotation between "
-        "bodies, or turn the mesh");
+        "T_ba must turn the axis of one line into that of the other: put a mounting rotation "
+        "between bodies, or turn the mesh");
   return {static_cast<int>(to), T(to, axis) > 0 ? 1.0 : -1.0};
 }
 
