@@ -121,6 +121,31 @@ TEST_CASE("the log warns of a parent's line that is held at its point alone") {
         }) == 0);
 }
 
+TEST_CASE("the log warns of a child's line that is held at its point alone") {
+  const auto warnings = [](void (*hold)(Diagram&, const FlexibleBodyHandle&)) {
+    Diagram d{"wall"};
+    auto a = d.add("a", square("tip", "root"));
+    release(a);
+    hold(d, a);
+    d.output("a", 6) = a.parent.accel;
+    return count_notes(compile(d), Note::Kind::warning, "check",
+                       {"a:", "child", "line root", "root.z2", "weld(a.line(\"root\")"});
+  };
+  CHECK(warnings([](Diagram&, const FlexibleBodyHandle& a) { ground(a.child("root")); }) == 1);
+  CHECK(warnings([](Diagram& d, const FlexibleBodyHandle& a) {
+          auto b = d.add("b", square("tip", "root"));
+          ground(b), weld(a.child("root"), b.child("root"));
+        }) == 1);
+  CHECK(warnings([](Diagram& d, const FlexibleBodyHandle& a) {
+          auto b = d.add("b", square("tip", "root"));
+          ground(b), weld(a.line("root"), b.line("root"));
+        }) == 0);
+  CHECK(warnings([](Diagram&, const FlexibleBodyHandle& a) { ground(a.line("root")); }) == 0);
+  CHECK(warnings([](Diagram& d, const FlexibleBodyHandle& a) {
+          a.child("root").force += d.input("F", 6);
+        }) == 0);
+}
+
 TEST_CASE(
     "a body whose only child is a line: child is that point, and no shape has a child's name") {
   Diagram d{"wall"};
