@@ -25,6 +25,8 @@ void bind_parts(py::module_& m) {
       .def_readonly("open_right", &NyquistCount::open_right, "P, poles of L right of the axis.")
       .def_readonly("closed_right", &NyquistCount::closed_right,
                     "Z, closed-loop poles right of the axis.")
+      .def_readonly("closed_on_axis", &NyquistCount::closed_on_axis,
+                    "Closed-loop poles on the axis, up to rounding.")
       .def_readonly("encirclements", &NyquistCount::encirclements,
                     "N, clockwise turns of det(1 + L(s)) about 0.")
       .def_readonly("agree", &NyquistCount::agree, "N = Z - P; with a delay: N is whole.");
