@@ -1,6 +1,6 @@
-// The diagrams and models of the C++ examples, for comparison with those of examples/python: the
-// examples themselves are compiled here, with a `compile` that also writes what it returns, and
-// run.
+// The diagrams and models of the C++ examples, and what analyses make of these, for comparison with
+// those of examples/python: the examples themselves are compiled here, with a `compile` that also
+// writes what it returns, and run.
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
@@ -51,11 +51,69 @@ std::map<std::string, int> seen;
 int left = 0;  ///< calls of `compile` before the example is stopped
 struct Done {};
 
-/// A, B, C, D; of distributed bodies, which have none, a transfer's real and imaginary part.
+/// The numbers of an analysis as one row; none if it refuses the model.
+Eigen::MatrixXd row_of(const std::function<std::vector<double>()>& analysis) {
+  try {
+    const std::vector<double> numbers = analysis();
+    return Eigen::Map<const Eigen::RowVectorXd>(numbers.data(),
+                                                static_cast<Eigen::Index>(numbers.size()));
+  } catch (const titop::Error&) {
+    return {};
+  }
+}
+
+std::vector<double> numbers(const titop::Margins& m) {
+  std::vector<double> all{m.disk.alpha, m.disk.omega, m.nearest.value, m.nearest.omega};
+  for (const titop::LoopMargins& l : m.loops)
+    for (const titop::MarginAt& a : {l.larger_gain, l.smaller_gain, l.phase, l.delay, l.nearest})
+      all.insert(all.end(), {a.value, a.omega});
+  return all;
+}
+
+constexpr int kAnalysed = 60;  ///< states: analyses of more would take minutes
+
+/// A, B, C, D; of up to kAnalysed states H2 and H-infinity norms of the model whose poles are moved
+/// left by 1 rad/s, without direct term, so that they are finite; margins of its first output over
+/// its first input as L.
+std::vector<Eigen::MatrixXd> matrices(const titop::StateSpace& m) {
+  if (m.order() > kAnalysed) return {m.A, m.B, m.C, m.D};
+  const Eigen::MatrixXd A = m.A - Eigen::MatrixXd::Identity(m.order(), m.order());
+  const titop::StateSpace stable{A, m.B, m.C, 0 * m.D};
+  const auto h2 = [&] { return std::vector{norm_h2(stable)}; };
+  const auto hinf = [&] {
+    const titop::HinfNorm norm = norm_hinf(stable);
+    return std::vector{norm.value, norm.omega};
+  };
+  const Eigen::Index rows = std::min<Eigen::Index>(1, m.C.rows()),
+                     cols = std::min<Eigen::Index>(1, m.B.cols());
+  const titop::StateSpace L{A, m.B.leftCols(cols), m.C.topRows(rows),
+                            Eigen::MatrixXd::Zero(rows, cols)};
+  const auto margins = [&] { return numbers(titop::margins(L)); };
+  return {m.A, m.B, m.C, m.D, row_of(h2), row_of(hinf), row_of(margins)};
+}
+
+/// The margins at all loop points, one after the other.
+std::vector<double> loop_margins(const titop::System& s) {
+  std::vector<double> all;
+  for (const std::string& name : loop_points(s)) {
+    const std::vector<double> more = numbers(margins(loop(s, name)));
+    all.insert(all.end(), more.begin(), more.end());
+  }
+  return all;
+}
+
+/// The same, its loops and the response to a unit step of all inputs, which is checked by an
+/// estimate; of distributed bodies, which have no model, a transfer's real and imaginary part.
 std::vector<Eigen::MatrixXd> matrices(const titop::System& s) {
   try {
-    const titop::StateSpace& m = s.state_space();
-    return {m.A, m.B, m.C, m.D};
+    std::vector<Eigen::MatrixXd> all = matrices(s.state_space());
+    if (all.size() == 4) return all;
+    all.push_back(row_of([&] { return loop_margins(s); }));
+    const auto u = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(s.inputs().size()));
+    const titop::Trajectory t =
+        simulate(s, titop::Excitation::step(u), {.step = 0.01, .until = 0.5});
+    all.insert(all.end(), {t.y, t.error});
+    return all;
   } catch (const titop::Error& error) {
     if (error.mistakes().front().code != titop::Code::not_rational) throw;
     const Eigen::MatrixXcd H = s.transfer({2, 60});
@@ -88,8 +146,7 @@ titop::System compile(const titop::Diagram& d, const titop::Options& options = {
 titop::ReducedSystem compile(const titop::Diagram& d, const titop::Scene& scene,
                              const titop::Options& options = {}) {
   titop::ReducedSystem s = titop::compile(d, scene, options);
-  const titop::StateSpace m = s.state_space();
-  write(d, {m.A, m.B, m.C, m.D});
+  write(d, matrices(s.state_space()));
   return s;
 }
 
