@@ -16,11 +16,14 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
+using Eigen::VectorXd;
 using linalg::at;
 
 /// Digits of an eigenproblem of numbers that an elimination has computed.
 constexpr double kDigits = 12;
-/// Of a port's sensitivity to all modes: less is rounding (by symmetry no force moves the mode).
+/// Of a port's sensitivity to all modes: less is rounding (by symmetry no force moves the mode);
+/// and of the sensitivity of all ports: less is rounding (no mode moves the port in this
+/// direction).
 constexpr double kSeen = 1e-10;
 
 [[noreturn]] void refuse(const std::string& message, const std::string& hint,
@@ -170,16 +173,49 @@ CompiledPart compile_part(const Diagram& d) {
   return c;
 }
 
+/// Largest radius of gyration about the root [m]; 1 if no mass is off it.
+double radius(const Whole& w) {
+  const Vector6 mass = -w.D0.bottomRightCorner<6, 6>().diagonal();
+  const double square = mass.tail<3>().maxCoeff() / mass.head<3>().mean();
+  return square > 0 && std::isfinite(square) ? std::sqrt(square) : 1;
+}
+
+/// Sizes of the columns of b (modes x ports, six columns a port, the root last), as shares of those
+/// of all children, or of the root: in one unit, rotations and moments at this radius.
+VectorXd shares_of_ports(const MatrixXd& b, double radius) {
+  VectorXd size = b.colwise().norm();
+  const Index root = size.size() - 6;
+  for (Index j = 0; j < size.size(); ++j)
+    if (j % 6 >= 3) size(j) *= j < root ? radius : 1 / radius;
+  size.head(root).normalize();
+  size.tail(6).normalize();
+  return size;
+}
+
+/// Scales of the ports' columns, by which they compare; 0: its inputs move, and its outputs read,
+/// no mode beyond rounding (a hinge moves no point along its axis).
+VectorXd scales_of_ports(const Whole& w) {
+  const MatrixXd read = w.ca.transpose();
+  const VectorXd share_moved = shares_of_ports(w.b, radius(w)),
+                 share_read = shares_of_ports(read, radius(w));
+  VectorXd scale(w.b.cols());
+  for (Index j = 0; j < scale.size(); ++j) {
+    const double size = w.b.col(j).norm();
+    const bool seen = share_moved(j) > kSeen || share_read(j) > kSeen;
+    scale(j) = !seen ? 0 : size > 0 ? 1 / size : 1;
+  }
+  return scale;
+}
+
 /// W of y = rigid u + W' etadd, etadd = W u - ...: the modes of mass 1. Stiffnesses of parts
 /// without modal data are known up to a factor, so that outputs read a mode `mass` times as inputs
 /// move it.
 MatrixXd mass_normalised(const Whole& w, const std::string& name) {
-  const auto or_1 = [](double x) { return x > 0 ? x : 1; };
-  const Eigen::VectorXd size = w.b.colwise().norm().transpose().unaryExpr(or_1);
+  const VectorXd scale = scales_of_ports(w);
   MatrixXd W = MatrixXd::Zero(w.b.rows(), w.b.cols());
   for (Index j = 0; j < W.rows(); ++j) {
-    const Eigen::VectorXd moved = w.b.row(j).transpose().cwiseQuotient(size),
-                          read = w.ca.col(j).cwiseQuotient(size);
+    const VectorXd moved = w.b.row(j).transpose().cwiseProduct(scale),
+                   read = w.ca.col(j).cwiseProduct(scale);
     if (moved.cwiseAbs().maxCoeff() <= kSeen) continue;
     const double mass = moved.dot(read) / moved.squaredNorm();
     if (!(mass > 0) || (read - mass * moved).norm() > kSymmetric * mass * moved.norm())
@@ -188,7 +224,8 @@ MatrixXd mass_normalised(const Whole& w, const std::string& name) {
                       "otherwise than their motions show it",
                       name, std::sqrt(w.lambda(j))),
           "keep controllers and gains outside of the part");
-    W.row(j) = std::sqrt(mass) * w.b.row(j);
+    W.row(j) =
+        std::sqrt(mass) * (scale.array() > 0).select(w.b.row(j).transpose(), 0.0).transpose();
   }
   return W;
 }
@@ -229,7 +266,7 @@ ModalData assembled_part(const Diagram& part, const std::string& root,
   const MatrixXd W = mass_normalised(w, part.name());
   ModalData data;
   data.omega = w.lambda.cwiseSqrt();
-  data.xi = Eigen::VectorXd::Zero(data.omega.size());
+  data.xi = VectorXd::Zero(data.omega.size());
   data.digits = digits_of(part.graph());
   data.L_P = -W.rightCols<6>();
   const Matrix6 D_P = -w.D0.bottomRightCorner<6, 6>();

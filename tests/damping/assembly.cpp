@@ -234,3 +234,71 @@ TEST_CASE("a parallelogram of four hinges on one spring: one mode, by hand") {
                  (2 * link * side / 2 + coupler * side) / std::sqrt(I)) <= 1e-9 * coupler);
   CHECK(std::abs(data.D_P(0, 0) - (5 + 2 * link + coupler)) <= 1e-9);
 }
+
+namespace {
+
+/// By hand, in the root's frame at the angle t about (1, 2, 3): a panel on a hub, by one joint on a
+/// spring. Its one mode moves a point r of the panel, from the joint, by axis x r (hinge) or axis
+/// (slider) per unit.
+struct OneMode {
+  double omega;
+  Vector6 Phi, L;
+};
+
+constexpr double kPanel = 2, kSpring = 100;  // [kg], [N m or N/m]
+const Vector3d kAxis(0, 1, 0), kCentre(0.5, 0.2, 0.1), kEnd(1, 0.3, 0.2), kSite(1, 0, 0);
+const Vector3d kOwn(0.2, 0.2, 0.3);  // about the centre of mass [kg m^2]
+
+OneMode by_hand_at(double t, bool hinged) {
+  const Matrix3d T = Eigen::AngleAxisd(t, Vector3d(1, 2, 3).normalized()).matrix();
+  const Vector3d a = T * kAxis, turn = hinged ? a : Vector3d::Zero();
+  const auto motion = [&](const Vector3d& r) { return hinged ? a.cross(T * r).eval() : a; };
+  const Vector3d p = kPanel * motion(kCentre);  // momentum per unit of the rate
+  const Vector3d h = (kSite + T * kCentre).cross(p) + T * kOwn.asDiagonal() * T.transpose() * turn;
+  const double m = kPanel * motion(kCentre).squaredNorm() +
+                   turn.dot(T * kOwn.asDiagonal() * T.transpose() * turn);
+  OneMode mode{std::sqrt(kSpring / m), {}, {}};
+  mode.Phi << motion(kEnd), turn;
+  mode.L << p, h;
+  mode.Phi /= std::sqrt(m), mode.L /= std::sqrt(m);
+  return mode;
+}
+
+FlexibleBody panel_at(double t, bool hinged) {
+  Diagram part{"part"};
+  auto hub = part.add(
+      "hub", RigidBody{.mass = 10, .inertia = Matrix3d::Identity(), .children = {{"c", kSite}}});
+  auto panel = part.add("panel", RigidBody{.mass = kPanel,
+                                           .inertia = kOwn.asDiagonal(),
+                                           .PA = kCentre,
+                                           .children = {{"tip", kEnd}}});
+  const Rotation turn = Rotation::about({1, 2, 3}, t);
+  if (hinged) {
+    auto joint = hinge(part, "h", panel, hub.child, turn, kAxis);
+    joint.torque = kSpring * joint.angle;
+  } else {
+    auto joint = slide(part, "h", panel, hub.child, turn, kAxis);
+    joint.force = kSpring * joint.travel;
+  }
+  return damping_of_assembly(part, "hub.parent", {{"tip", "panel.tip"}}, 0.003);
+}
+
+}  // namespace
+
+TEST_CASE("two bodies on a joint with a spring, at 200 angles: one mode, by hand") {
+  for (const bool hinged : {true, false})
+    for (int k = 0; k < 200; ++k) {
+      CAPTURE(hinged);
+      CAPTURE(k);
+      const double t = 0.005 * k;
+      const OneMode exact = by_hand_at(t, hinged);
+      const ModalData data = panel_at(t, hinged).data();
+      REQUIRE(data.omega.size() == 1);
+      CHECK(std::abs(data.omega(0) - exact.omega) <= 1e-12 * exact.omega);
+      CHECK(data.xi(0) == 0.003);
+      const MatrixXd& Phi = data.children[0].Phi_C;
+      const double sign = Phi.col(0).dot(exact.Phi) > 0 ? 1 : -1;
+      CHECK((sign * Phi - exact.Phi).norm() <= 1e-12);
+      CHECK((sign * data.L_P.transpose() - exact.L).norm() <= 1e-12 * exact.L.norm());
+    }
+}
