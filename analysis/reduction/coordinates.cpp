@@ -5,6 +5,7 @@
 #include <map>
 #include <titop/analysis/reduction/coordinates.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 
 namespace titop::detail {
@@ -84,6 +85,12 @@ MatrixXd columns(const MatrixXd& m, const std::vector<int>& which) {
   return result;
 }
 
+/// A bushing whose axes are coupled: coordinates of its axes with stiffness, its matrices.
+struct CoupledSpring {
+  std::vector<int> list;
+  MatrixXd K, C;
+};
+
 /// Data of the coordinates of all blocks, before G is known.
 struct Raw {
   StateSpace m;
@@ -91,8 +98,10 @@ struct Raw {
   std::vector<int> kept;  ///< coordinates that stay
   MatrixXd T;             ///< all from kept; 0 x 0: they are the same
   MatrixXd A_q, A_v;      ///< rates of kept from positions and rates of all
+  MatrixXd A_k;           ///< A_q, from the forces of coupled springs instead of their positions
   std::vector<int> node;  ///< per coordinate of all
-  VectorXd known;         ///< stiffness by a body's modes; 0: not known
+  VectorXd known;  ///< k of A_k = -G k, by a body's modes; of coupled springs 1; 0: not known
+  std::vector<CoupledSpring> springs;
 
   Index all() const { return static_cast<Index>(pairs.rate.size()); }
   const std::string& name(Index i) const {
@@ -115,6 +124,32 @@ void find_owners(Raw& raw, const SystemData& data) {
   for (Index i = 0; i < raw.all(); ++i) {
     raw.node.push_back(node_of[at(raw.pairs.rate[at(i)])]);
     if (const int q = raw.pairs.position[at(i)]; q >= 0) raw.known(i) = stiffness(q);
+  }
+}
+
+/// Of a bushing: states q, then qd; the first six outputs are K q + C qd.
+void find_coupled_springs(Raw& raw, const SystemData& data) {
+  const Layout& l = data.layout();
+  std::vector<int> coordinate(at(raw.m.A.rows()), -1);
+  for (Index i = 0; i < raw.all(); ++i)
+    if (const int q = raw.pairs.position[at(i)]; q >= 0) coordinate[at(q)] = static_cast<int>(i);
+  for (const int node : l.state_nodes) {
+    const Dynamics& d = *data.numbers.blocks[at(node)];
+    if (data.graph().nodes[at(node)].block->type() != "Bushing" || d.A.rows() != 12) continue;
+    const Matrix6 K = d.C.topLeftCorner<6, 6>(), C = d.C.topRightCorner<6, 6>();
+    if (K.isDiagonal(0) && C.isDiagonal(0)) continue;
+    CoupledSpring spring;
+    std::vector<int> axes;
+    for (int i = 0; i < 6; ++i)
+      if (const int q = coordinate[at(l.state_first[at(node)] + i)]; q >= 0 && K(i, i) > 0) {
+        axes.push_back(i);
+        spring.list.push_back(q);
+      }
+    spring.K = K(axes, axes);
+    spring.C = C(axes, axes);
+    if (axes.empty() || weak_pivot(spring.K, linalg::kMatrixDigits) >= 0) continue;
+    for (const int i : spring.list) raw.known(i) = 1;
+    raw.springs.push_back(std::move(spring));
   }
 }
 
@@ -152,11 +187,16 @@ Raw read(const System& system, const SystemData& data) {
   raw.m = model_of_blocks(system, data);
   raw.pairs = find_pairs(raw.m, rates_of(data.graph(), data.layout(), raw.m.A));
   find_owners(raw, data);
+  find_coupled_springs(raw, data);
   find_kept(raw, data.states);
   std::vector<int> rows;
   for (const int i : raw.kept) rows.push_back(raw.pairs.rate[at(i)]);
   raw.A_q = columns(raw.m.A(rows, Eigen::all), raw.pairs.position);
   raw.A_v = columns(raw.m.A(rows, Eigen::all), raw.pairs.rate);
+  raw.A_k = raw.A_q;
+  for (const CoupledSpring& s : raw.springs)
+    raw.A_k(Eigen::all, s.list) =
+        solve_definite(s.K, raw.A_q(Eigen::all, s.list).transpose()).transpose();
   return raw;
 }
 
@@ -188,16 +228,16 @@ VectorXd stiffnesses(const MatrixXd& A, const VectorXd& known) {
 }
 
 /// Stiffness of all coordinates: of independent ones by symmetry, of dependent ones from their
-/// columns of A.
+/// columns of A; of coupled springs 1.
 VectorXd all_stiffnesses(const Raw& raw) {
   VectorXd k = VectorXd::Zero(raw.all());
   std::vector<Index> rows, list;
   for (std::size_t r = 0; r < raw.kept.size(); ++r)
-    if (raw.A_q.col(raw.kept[r]).cwiseAbs().maxCoeff() > 0) {
+    if (raw.A_k.col(raw.kept[r]).cwiseAbs().maxCoeff() > 0) {
       rows.push_back(static_cast<Index>(r));
       list.push_back(raw.kept[r]);
     }
-  const MatrixXd A = raw.A_q(rows, list);
+  const MatrixXd A = raw.A_k(rows, list);
   for (std::size_t i = 0; i < list.size(); ++i)
     if (!(A(static_cast<Index>(i), static_cast<Index>(i)) < 0))
       refuse(
@@ -211,16 +251,32 @@ VectorXd all_stiffnesses(const Raw& raw) {
     const VectorXd t = raw.T(i, rows).transpose();
     const VectorXd response = G * t;
     k(i) = raw.known(i) != 0     ? raw.known(i)
-           : response.norm() > 0 ? -response.dot(raw.A_q(rows, i)) / response.squaredNorm()
+           : response.norm() > 0 ? -response.dot(raw.A_k(rows, i)) / response.squaredNorm()
                                  : 0;
   }
   return k;
 }
 
-/// Damping of each coordinate: its column of A_v is that of A_q times c / k.
+/// Refuses other effects of a coupled spring's rates than those of its own damping.
+void check_damping(const Raw& raw, const CoupledSpring& s) {
+  const MatrixXd by_force = raw.A_k(Eigen::all, s.list), v = raw.A_v(Eigen::all, s.list);
+  const MatrixXd off = v - by_force * s.C, terms = by_force.cwiseAbs() * s.C.cwiseAbs();
+  for (Index j = 0; j < v.cols(); ++j)
+    if (!(off.col(j).norm() <= kSymmetric * terms.col(j).norm()))
+      refuse(fmt::format("the rate of {} acts on other states than the damping of its bushing",
+                         raw.name(s.list[at(j)])));
+}
+
+/// Damping of each coordinate: its column of A_v is that of A_q times c / k; 0 of coupled springs.
 VectorXd dampings(const Raw& raw, const VectorXd& k) {
   VectorXd c = VectorXd::Zero(raw.all());
+  std::vector<char> coupled(at(raw.all()), 0);
+  for (const CoupledSpring& s : raw.springs) {
+    check_damping(raw, s);
+    for (const int i : s.list) coupled[at(i)] = 1;
+  }
   for (Index i = 0; i < raw.all(); ++i) {
+    if (coupled[at(i)]) continue;
     const auto v = raw.A_v.col(i), q = raw.A_q.col(i);
     const double size = v.norm();
     if (size == 0) continue;
@@ -236,8 +292,13 @@ VectorXd dampings(const Raw& raw, const VectorXd& k) {
   return c;
 }
 
-MatrixXd congruent(const VectorXd& diagonal, const MatrixXd& T) {
-  return T.transpose() * diagonal.asDiagonal() * T;
+/// T' S T, S: this diagonal, and the matrices of the coupled springs.
+MatrixXd congruent(const VectorXd& diagonal, const Raw& raw, MatrixXd CoupledSpring::*matrix,
+                   const MatrixXd& T) {
+  MatrixXd ST = diagonal.asDiagonal() * T;
+  for (const CoupledSpring& s : raw.springs)
+    ST(s.list, Eigen::all) = s.*matrix * T(s.list, Eigen::all);
+  return T.transpose() * ST;
 }
 
 /// G = -A_ee K^-1, symmetric up to rounding, or refused.
@@ -324,11 +385,14 @@ Coordinates coordinates(const System& system, const SystemData& data) {
     T = raw.T;
   else
     for (std::size_t j = 0; j < raw.kept.size(); ++j) T(raw.kept[j], static_cast<Index>(j)) = 1;
-  c.diagonal = !closed;
-  c.K = closed ? MatrixXd(congruent(k, T(Eigen::all, elastic))) : MatrixXd(k(elastic).asDiagonal());
-  if (damping.maxCoeff() > 0)
-    c.D = closed ? MatrixXd(congruent(damping, T(Eigen::all, elastic)))
-                 : MatrixXd(damping(elastic).asDiagonal());
+  c.diagonal = !closed && raw.springs.empty();
+  const auto full = [&](const VectorXd& diagonal, MatrixXd CoupledSpring::*matrix) {
+    return c.diagonal ? MatrixXd(diagonal(elastic).asDiagonal())
+                      : congruent(diagonal, raw, matrix, T(Eigen::all, elastic));
+  };
+  c.K = full(k, &CoupledSpring::K);
+  c.D = full(damping, &CoupledSpring::C);
+  if (c.D.isZero(0)) c.D.resize(0, 0);
   c.G = flexibility(c, A_total(elastic, elastic));
   c.A_loose = A_total(loose, elastic);
   c.B = raw.m.B(rows, Eigen::all);

@@ -24,7 +24,7 @@ struct Coordinates {
   Eigen::MatrixXd G;         ///< n_elastic x n_elastic, symmetric positive definite
   Eigen::MatrixXd K;         ///< the same size, symmetric positive definite
   Eigen::MatrixXd D;         ///< the same, semidefinite; 0 x 0: undamped
-  bool diagonal = true;      ///< K is diagonal: no chain is closed
+  bool diagonal = true;      ///< K is diagonal: no chain is closed, no bushing's axes are coupled
   Eigen::MatrixXd A_loose;   ///< qdd of the loose ones from q of the elastic ones
   Eigen::MatrixXd B;         ///< n x inputs
   Eigen::MatrixXd C_q, C_v;  ///< outputs x n
@@ -43,10 +43,11 @@ class NoStructure : public Error {
   using Error::Error;
 };
 
-/// Extracts them from the model. Stiffnesses are those of the bodies' modes; of joints and springs
-/// those that make G symmetric. Throws NoStructure (bad_value), with the names of states, if there
-/// is no such form: controllers and filters in the loop, springs that couple different coordinates,
-/// dampers on motions without stiffness. O(n^2), O(n^3) with closed chains.
+/// Extracts them from the model. Stiffnesses are those of the bodies' modes and of bushings with
+/// coupled axes; of joints and springs those that make G symmetric. Throws NoStructure (bad_value),
+/// with the names of states, if there is no such form: controllers and filters in the loop, springs
+/// between coordinates of different blocks, dampers on motions without stiffness. O(n^2), O(n^3)
+/// with closed chains.
 Coordinates coordinates(const System& system, const SystemData& data);
 
 }  // namespace titop::detail

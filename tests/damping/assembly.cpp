@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scenes/by_hand.hpp"
+#include "scenes/isolated_wheel.hpp"
 #include "support/mistakes.hpp"
 
 using namespace titop;
@@ -300,5 +300,25 @@ TEST_CASE("two bodies on a joint with a spring, at 200 angles: one mode, by hand
       const double sign = Phi.col(0).dot(exact.Phi) > 0 ? 1 : -1;
       CHECK((sign * Phi - exact.Phi).norm() <= 1e-12);
       CHECK((sign * data.L_P.transpose() - exact.L).norm() <= 1e-12 * exact.L.norm());
+    }
+}
+
+TEST_CASE("a wheel on bushings whose axes are coupled: the damping of the free modes") {
+  for (const bool two : {false, true})
+    for (const bool damped : {false, true}) {
+      CAPTURE(two);
+      CAPTURE(damped);
+      const IsolatedWheel wheel{.two = two, .damped = damped};
+      Diagram part{"isolated wheel"};
+      wheel.add(part);
+      const FlexibleBody body = damping_of_assembly(part, "hub.parent", {{"tip", "wheel.rim"}},
+                                                    kReport, RootBoundary::free);
+      by_hand::Structure a = wheel.by_hand();
+      a.D = modal_damping(a.M, a.K, 6);
+      // Children of the part have the frame of its root.
+      const MatrixXd turn = by_hand::dual(wheel.T());
+      a.C.bottomRows(6) = turn * a.C.bottomRows(6);
+      a.B = a.C.transpose();
+      CHECK(worst_against(on_free_root(body), a) <= 1e-9);
     }
 }
