@@ -90,6 +90,7 @@ internal(compiler/system/compile_graph.hpp analysis/certify/ analysis/reduction/
          analysis/damping/ analysis/control/ analysis/distributed/ analysis/shapes/)
 # analysis/certify/ measures differences beside the rounding of the elimination.
 internal(compiler/system/elimination_terms.hpp analysis/certify/)
+internal(compiler/system/zero_pairs.hpp analysis/reduction/ analysis/distributed/)
 # analysis/lft/ takes columns and rows of the transfers of opened systems.
 # analysis/certify/certify_full.cpp and emit/cpp/form.cpp use transfer_if_any.
 internal(compiler/system/transfer_part.hpp analysis/lft/ analysis/certify/certify_full.cpp

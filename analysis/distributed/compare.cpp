@@ -7,6 +7,7 @@
 #include <titop/analysis/distributed/compare.hpp>
 #include <titop/analysis/reduction/bound.hpp>
 #include <titop/analysis/reduction/phase_grid.hpp>
+#include <titop/compiler/system/zero_pairs.hpp>
 #include <titop/graph/closed_form.hpp>
 #include <titop/graph/support/parallel.hpp>
 
@@ -85,7 +86,10 @@ ErrorBound difference(const TransferAt& finite, const System& exact, const Scene
   const std::vector<MatrixXcd> E = differences(finite, exact, samples);
   detail::refuse_growing(exact, scene, band, samples);
   ErrorBound b;
-  b.peak = detail::with_floor(samples.peak, detail::kNearlyZero);
+  const detail::ZeroPairs zero(detail::data_of(exact), samples.H);
+  const MatrixXd peak = zero.cleared(samples.peak);
+  b.peak = detail::with_floor(peak.cwiseMax(detail::kNearlyZero * zero.of_ports(peak)),
+                              detail::kNearlyZero);
   b.pairs = MatrixXd::Zero(b.peak.rows(), b.peak.cols());
   for (std::size_t k = 0; k < E.size(); ++k) {
     const MatrixXd e = E[k].cwiseAbs().cwiseQuotient(b.peak);

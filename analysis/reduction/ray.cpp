@@ -3,6 +3,7 @@
 #include <limits>
 #include <titop/analysis/reduction/phase_grid.hpp>
 #include <titop/analysis/reduction/ray.hpp>
+#include <titop/compiler/system/zero_pairs.hpp>
 #include <titop/graph/paths.hpp>
 #include <titop/graph/support/parallel.hpp>
 
@@ -198,6 +199,9 @@ Samples sample(const System& system, const Scene& scene, const SampledSpectrum& 
     meant = meant.cwiseMax(here.alike);
     result.alike = result.alike.cwiseMax(here.terms);
   }
+  const ZeroPairs zero(data_of(system), result.H);
+  result.peak = zero.cleared(result.peak);
+  meant = zero.of_ports(meant);
   if (w.by_peaks) {
     const auto [out, in] = port_sizes(result.peak.cwiseMax(kNearlyZero * meant));
     meant = meant.cwiseMax(out * in);

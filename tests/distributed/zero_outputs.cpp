@@ -1,0 +1,46 @@
+// Outputs that are 0 but for rounding, in comparisons with distributed beams.
+#include <doctest/doctest.h>
+
+#include <titop/analysis/distributed/compare.hpp>
+#include <titop/analysis/distributed/reduce_beams.hpp>
+
+#include "reduction/free_hinge.hpp"
+
+using namespace titop;
+using namespace titop_test;
+using Eigen::MatrixXd;
+
+namespace {
+
+ErrorBound error_of_six(const MatrixXd& reads) {
+  const FlexibleBody finite{with_elements(kBoom, 6)};
+  return compare(compile(hinged_load(finite, reads)), compile(hinged_load(kBoom, reads)),
+                 kHingeScene);
+}
+
+}  // namespace
+
+TEST_CASE("compare: an output that is 0 leaves the other pairs as they are without it") {
+  const ErrorBound all = error_of_six(whole_reaction()), rest = error_of_six(other_components());
+  CHECK(without_zero(all.pairs).isApprox(rest.pairs, 1e-6));
+  CHECK(without_zero(all.peak).isApprox(rest.peak, 1e-6));
+  CHECK(all.worst == doctest::Approx(rest.worst).epsilon(1e-6));
+  CHECK(all.output == rest.output);
+  CHECK(all.pairs.row(kAboutAxis).maxCoeff() <= 1e-9);
+}
+
+TEST_CASE("compare: a small pair that is no rounding has its own size") {
+  const ErrorBound one = error_of_six(other_components()),
+                   small = error_of_six(scaled_torque(5e-9));
+  CHECK(small.pairs.isApprox(one.pairs, 1e-6));
+  CHECK(small.peak.row(3).isApprox(5e-9 * one.peak.row(3), 1e-6));
+}
+
+TEST_CASE("reduce_beams: an output that is 0 changes neither order nor error") {
+  const auto reduced = [](const MatrixXd& reads) {
+    return reduce_beams(hinged_load(kBoom, reads), kHingeScene);
+  };
+  const ReducedBeams all = reduced(whole_reaction()), rest = reduced(other_components());
+  CHECK(all.system.order() == rest.system.order());
+  CHECK(all.error.worst == doctest::Approx(rest.error.worst).epsilon(1e-6));
+}
