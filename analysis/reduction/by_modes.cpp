@@ -57,12 +57,14 @@ class ByModes : public Reduction {
                                        [](auto& a, auto& b) { return a.error < b.error; });
     const auto step = static_cast<std::size_t>(best - steps.begin());
     const ErrorBound& b = bound_of(step);
+    const bool can_balance = setting_.full.order() <= setting_.scene.balance_up_to;
     throw Error(
         Code::bad_value,
         fmt::format("an accuracy of {:.1e} cannot be met: {:.1e} is reached with {} "
                     "coordinates, from {} to {} at {:.4g} Hz",
                     accuracy, b.worst, sequence().model(step).order(), b.input, b.output, b.hertz),
-        setting_.way_out(b.worst, "whole_up_to", "the modes of the whole"),
+        setting_.way_out(b.worst, "whole_up_to", "the modes of the whole") +
+            (can_balance ? ", or balance states: Scene::keep_structure = false" : ""),
         {fmt::format("most of the missing motion is in {}{}", where_missing(step, b),
                      setting_.bodies.empty() ? "" : "; " + setting_.bodies)});
   }
