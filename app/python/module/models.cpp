@@ -229,6 +229,9 @@ void bind_certificates(py::module_& m) {
       .def_readonly("weakest_pivot", &Certificate::weakest_pivot,
                     "Smallest pivot over the sum of magnitudes of its terms: 1 without "
                     "cancellation, 1e-16 without a digit.")
+      .def_readonly(
+          "pivot_growth", &Certificate::pivot_growth,
+          "Largest ratio of the size of a row of the elimination to its least size before.")
       .def_readonly("margin", &Certificate::margin, "Of algebraic loops; 1 for none.")
       .def("__str__", [](const Certificate& c) { return to_string(c); });
   py::class_<OrderVerdict>(m, "OrderVerdict", "Reliability of the order of a model.")
