@@ -20,7 +20,10 @@ constexpr double kMostTurns = 1e5;  ///< of a delay, in quarters
 /// Rounding of the poles of the discrete model whose image by w = c (z - 1) / (z + 1) this is.
 double rounding_in_z(StateSpace m, double c) {
   const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(m.A.rows(), m.A.rows());
-  m.A = linalg::inverse(c * I - m.A).matrix * (c * I + m.A);
+  const linalg::Inverse inverse = linalg::inverse(c * I - m.A);
+  // A pole at z = infinity, w = c, is not near the axis: the rounding of w alone counts.
+  if (!(inverse.rcond > static_cast<double>(m.A.rows()) * linalg::kEpsilon)) return 0;
+  m.A = inverse.matrix * (c * I + m.A);
   return rounding_of_poles(m);
 }
 
@@ -57,7 +60,8 @@ std::vector<SidedPole> sided_poles(const StateSpace& model, double period) {
   std::vector<SidedPole> result;
   for (const std::complex<double>& s : all_poles(model)) {
     // dw/dz = (2 / period - w)^2 period / 4
-    const double rounding = std::max(own, std::norm(2 / period - s) * period / 4 * in_z);
+    const double of_z = period > 0 ? std::norm(2 / period - s) * period / 4 * in_z : 0,
+                 rounding = std::max(own, of_z);
     if (std::abs(s.real()) <= rounding)
       result.push_back({{0, s.imag()}, Side::axis});
     else

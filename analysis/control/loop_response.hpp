@@ -36,8 +36,9 @@ struct SidedPole {
   std::complex<double> s;
   Side side = Side::left;
 };
-/// `period` > 0: of a discrete model whose image by w = (2 / period) (z - 1) / (z + 1) this is: a
-/// pole near z = 1 is rounded to a unit of 1, which is more than one of w.
+/// `period` [s] > 0: of a discrete model whose image by w = c (z - 1) / (z + 1), c = 2 / period,
+/// this is. Rounding of its A moves a simple pole z by dz, and w by dz |c - w|^2 / (2 c): near z =
+/// 1 by more than the rounding of w's own A. (It splits a double pole by half of the digits.)
 std::vector<SidedPole> sided_poles(const StateSpace& model, double period = 0);
 
 /// Frequencies [rad/s], ascending and different, above 0, at which or between which |L| and arg L

@@ -13,7 +13,8 @@ namespace titop::detail {
 /// half; they begin at each pole and at distances from it that grow by 4. `period`: as sided_poles.
 NyquistCount nyquist_count(const StateSpace& L, const LoopResponse& response, double period = 0);
 
-/// Margins of a loop transfer, or with a period of the discrete one whose image it is.
+/// Margins of a loop transfer with a delay [s], or with a period [s], else 0, of the discrete one
+/// whose image it is: frequencies are then those of w. Throws as `margins`.
 Margins margins_of(const StateSpace& L, double delay, double period);
 
 }  // namespace titop::detail

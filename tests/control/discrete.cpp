@@ -113,6 +113,23 @@ TEST_CASE("a pole at z = 1 in any coordinates") {
   }
 }
 
+TEST_CASE("a closed loop with a pole at z = infinity is not stable") {
+  // L = -1 + 1 / (z - 1/4): 1 + L is 0 there.
+  StateSpace m;
+  m.A = m.B = m.C = Eigen::MatrixXd::Ones(1, 1), m.A(0, 0) = 0.25;
+  m.D = -Eigen::MatrixXd::Ones(1, 1);
+  for (const double period : {1.0, 0.3, 0.01}) {
+    CAPTURE(period);
+    bool stable = false;
+    try {
+      stable = margins(DiscreteModel{m, period}).stable;
+    } catch (const Error& error) {
+      CHECK(error.has(Code::ill_posed));
+    }
+    CHECK_FALSE(stable);
+  }
+}
+
 TEST_CASE("Tustin's rule makes no gain margin of rounding") {
   // L = (0.7 a (s + a) + 1.3) / ((s + a) (s + 2 a)): its phase stays above -180 degrees, and L is 0
   // at z = -1.
