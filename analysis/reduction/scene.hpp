@@ -18,9 +18,10 @@ enum class BoundKind {
 /// The error of a pair (input, output) is the largest difference of the transfer over the band,
 /// over the largest magnitude of the pair itself there. Pairs that are nearly zero, as by
 /// symmetry, are scaled by 1e-6 of the size that they would have if input and output were coupled
-/// equally to all modes, independent of units. Both are taken on the ray s = (zeta + j sqrt(1 -
-/// zeta^2)) omega, zeta the damping floor, since an undamped peak has no finite height; on it every
-/// mode has the additional damping zeta.
+/// equally to all modes, independent of units. A pair below 1e-12 of its port's largest at every
+/// frequency is rounding of a 0: outputs of very different size need ports of their own. Both are
+/// taken on the ray s = (zeta + j sqrt(1 - zeta^2)) omega, zeta the damping floor, since an
+/// undamped peak has no finite height; on it every mode has the additional damping zeta.
 struct Scene {
   /// "W", or one of its scalars, "W(3)"; empty: all. The order is the diagram's, not the order
   /// here. Other inputs are held at 0: a point or joint whose acceleration is one of them is

@@ -115,8 +115,9 @@ struct Trajectory {
 /// `excitation`. Throws bad_value for steps that are not positive or do not divide `until`, and for
 /// an rk4 step beyond the limit of stability, which it names, and if the error of the automatic
 /// choice exceeds Simulation::accuracy, with the output; size for x0 or inputs of another size;
-/// not_finite if the response overflows (an unstable system), with the time. Cost: that of the
-/// Stepper, and of its step times the number of steps.
+/// singular if the equations of a midpoint step, for unit inputs, are not solved to the rounding of
+/// their terms; not_finite if the response overflows (an unstable system), with the time. Cost:
+/// that of the Stepper, and of its step times the number of steps.
 ///
 /// Sources: [Hairer, Lubich, Wanner 2006] IV.2 (midpoint), [Van Loan 1978] (exponential).
 Trajectory simulate(const System& system, const Excitation& excitation,

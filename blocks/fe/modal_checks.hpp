@@ -52,7 +52,7 @@ ChildRank child_rank(const ModalData& data, const ModalChild& child);
 
 /// The same of a whole line: the six channels of its child, none for the line of the parent, and
 /// one per shape. `weld` of a child's line to a point locks all of them, `ground` of a parent's
-/// line its shapes. With fewer modes than channels the rank is their number.
+/// line its shapes. With fewer modes than channels the rank is at most the number of modes.
 struct LineRank {
   std::string line;
   int channels = 0;
@@ -97,7 +97,7 @@ struct ModalReport {
   std::vector<std::string> implausible;
   std::vector<LineRank> lines = {};
 };
-/// All of the above. Cost 100 N.
+/// All of the above. Cost 100 N, and N c^2 for each line of c channels.
 ModalReport modal_report(const ModalData& data);
 
 /// One fact per line; the modes with the largest effective masses only.

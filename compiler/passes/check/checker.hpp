@@ -83,8 +83,8 @@ std::vector<RotationAngle> rotation_angles(const Graph& g, ParameterValues value
 /// mounted there: truncated modes would bend under its loads (stiff_points.cpp).
 void note_stiff_points(Checker& c, ParameterValues values);
 
-/// Parents that are lines, of which no equation drives a shape (free_lines.cpp): the line bends
-/// freely behind its point.
+/// Lines of parents, and of children whose point is held, of which no equation drives a shape
+/// (free_lines.cpp): the edge bends freely behind its point.
 void note_free_lines(Checker& c);
 
 }  // namespace titop::passes
