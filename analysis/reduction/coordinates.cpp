@@ -4,8 +4,8 @@
 #include <cmath>
 #include <map>
 #include <titop/analysis/reduction/coordinates.hpp>
+#include <titop/analysis/reduction/coupled_springs.hpp>
 #include <titop/graph/linalg/index.hpp>
-#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 
 namespace titop::detail {
@@ -85,12 +85,6 @@ MatrixXd columns(const MatrixXd& m, const std::vector<int>& which) {
   return result;
 }
 
-/// A bushing whose axes are coupled: coordinates of its axes with stiffness, its matrices.
-struct CoupledSpring {
-  std::vector<int> list;
-  MatrixXd K, C;
-};
-
 /// Data of the coordinates of all blocks, before G is known.
 struct Raw {
   StateSpace m;
@@ -127,30 +121,13 @@ void find_owners(Raw& raw, const SystemData& data) {
   }
 }
 
-/// Of a bushing: states q, then qd; the first six outputs are K q + C qd.
 void find_coupled_springs(Raw& raw, const SystemData& data) {
-  const Layout& l = data.layout();
   std::vector<int> coordinate(at(raw.m.A.rows()), -1);
   for (Index i = 0; i < raw.all(); ++i)
     if (const int q = raw.pairs.position[at(i)]; q >= 0) coordinate[at(q)] = static_cast<int>(i);
-  for (const int node : l.state_nodes) {
-    const Dynamics& d = *data.numbers.blocks[at(node)];
-    if (data.graph().nodes[at(node)].block->type() != "Bushing" || d.A.rows() != 12) continue;
-    const Matrix6 K = d.C.topLeftCorner<6, 6>(), C = d.C.topRightCorner<6, 6>();
-    if (K.isDiagonal(0) && C.isDiagonal(0)) continue;
-    CoupledSpring spring;
-    std::vector<int> axes;
-    for (int i = 0; i < 6; ++i)
-      if (const int q = coordinate[at(l.state_first[at(node)] + i)]; q >= 0 && K(i, i) > 0) {
-        axes.push_back(i);
-        spring.list.push_back(q);
-      }
-    spring.K = K(axes, axes);
-    spring.C = C(axes, axes);
-    if (axes.empty() || weak_pivot(spring.K, linalg::kMatrixDigits) >= 0) continue;
-    for (const int i : spring.list) raw.known(i) = 1;
-    raw.springs.push_back(std::move(spring));
-  }
+  raw.springs = coupled_springs(data, coordinate);
+  for (const CoupledSpring& s : raw.springs)
+    for (const int i : s.list) raw.known(i) = 1;
 }
 
 /// The kept coordinates, and the map from them to all.
