@@ -51,6 +51,14 @@ inline Eigen::MatrixXd without_zero(const Eigen::MatrixXd& pairs) {
   return rest;
 }
 
+/// Entries differ by no more than this share of each, or by 1e-11 of the largest: ten times the
+/// accuracy of a transfer.
+inline bool alike(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double share) {
+  const Eigen::ArrayXXd allowed =
+      (share * b.cwiseAbs()).array().max(1e-11 * b.cwiseAbs().maxCoeff());
+  return a.rows() == b.rows() && a.cols() == b.cols() && ((a - b).array().abs() <= allowed).all();
+}
+
 /// The torque about x times this, as in another unit.
 inline Eigen::MatrixXd scaled_torque(double factor) {
   Eigen::MatrixXd reads = other_components();
