@@ -3,14 +3,17 @@
 
 namespace titop::steps {
 
-detail::DenseModel dense(const detail::SystemData& data, detail::DenseModel m) {
-  detail::write_dense(data, m.model, 0);
-  for (const Eigen::MatrixXd* matrix : {&m.model.A, &m.model.B, &m.model.C, &m.model.D})
+detail::Realization dense(const detail::SystemData& data) {
+  StateSpace m;
+  detail::write_dense(data, m, 0);
+  for (const Eigen::MatrixXd* matrix : {&m.A, &m.B, &m.C, &m.D})
     if (!matrix->allFinite()) detail::refuse_overflow("the dense model of " + data.graph().name);
-  m.against_factors = detail::dense_difference(data, m.model);
-  m.error = detail::dense_error(data, m.model);
-  detail::warn_of_lost_digits(data, m.error, m.notes);
-  return m;
+  detail::Realization r;
+  r.against_factors = detail::dense_difference(data, m);
+  r.error = detail::dense_error(data, m);
+  detail::warn_of_lost_digits(data, r.error, r.notes);
+  r.model = std::make_shared<const StateSpace>(std::move(m));
+  return r;
 }
 
 }  // namespace titop::steps

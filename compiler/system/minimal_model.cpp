@@ -155,16 +155,13 @@ Change change(const SystemData& d, const StateSpace& dense, const StateSpace& ju
   return worst;
 }
 
-/// The order by exact arithmetic, which counts the diagram's numbers without rounding: diagrams up
-/// to Options::exact_up_to before any mode is judged (`asked`), others afterwards: half a
-/// millisecond if the order is decided, ten if it is not.
-ExactOrder exact_order_of(const SystemData& d, int states, bool asked, bool decided) {
-  // Blocks' states that follow from others count there, and so do integrators of positions.
-  const ExactOptions limits =
-      asked     ? ExactOptions{.states = std::max(60, 4 * d.skeleton->options.exact_up_to)}
-      : decided ? ExactOptions{.states = 60, .unknowns = 100}
-                : ExactOptions{.states = 100, .unknowns = 1000};
-  return minreal::order_of_stage(d.skeleton->stage, states, limits, d.numbers.parameters);
+/// Limits of counting in exact arithmetic: half a millisecond if the order is decided, ten if it
+/// is not.
+constexpr ExactOptions kIfDecided{.states = 60, .unknowns = 100},
+    kIfUndecided{.states = 100, .unknowns = 1000};
+
+const ExactOptions& exact_limits(const OrderVerdict& v) {
+  return v.decided() ? kIfDecided : kIfUndecided;
 }
 
 /// Removes states that exact arithmetic shows to be redundant, if it counts fewer than are kept and
@@ -214,16 +211,21 @@ void say_left_out(const Change& by, std::vector<Note>& notes) {
                    std::abs(*std::min_element(by.left_out.begin(), by.left_out.end(), smaller)))});
 }
 
-/// Replaces the dense model by the minimal one, if its transfer keeps its digits.
-void minimize_checked(const SystemData& d, DenseModel& m) {
-  StateSpace& dense = m.model;
+/// The minimal model, if its transfer keeps the digits of the written one. `m`: without a model.
+void minimize_checked(const SystemData& d, const Realization& written, Minimal& m) {
+  const StateSpace& dense = *written.model;
   const Options& given = d.skeleton->options;
+  // Small diagrams are counted before any mode is judged, others afterwards.
   const bool asked = dense.order() <= given.exact_up_to;
   ExactOrder exact;
-  const auto count = [&](bool decided) {
-    exact = exact_order_of(d, dense.order(), asked, decided);
+  const auto count = [&](const ExactOptions& limits) {
+    exact = minreal::order_of_stage(d.skeleton->stage, dense.order(), limits, d.numbers.parameters);
   };
-  if (asked) count(true), m.notes.push_back({Note::Kind::info, "minimize", to_string(exact)});
+  if (asked) {
+    // Blocks' states that follow from others count there, and so do integrators of positions.
+    count({.states = std::max(60, 4 * given.exact_up_to)});
+    m.notes.push_back({Note::Kind::info, "minimize", to_string(exact)});
+  }
   const auto [judged, rounding] = without_rounding(d, dense);
   const MinimizeOptions options{.resolution = given.resolution,
                                 .exact_order = exact.decided ? exact.order : -1,
@@ -231,9 +233,9 @@ void minimize_checked(const SystemData& d, DenseModel& m) {
                                 .rounding = rounding};
   Minimized minimal = minreal::minimize_unmeasured(judged, options);
   doubt_lost_digits(d, judged, options, minimal.order, m.notes);
-  if (m.error.beside_largest.error > kUnclearDigits && !minimal.order.exact)
+  if (written.error.beside_largest.error > kUnclearDigits && !minimal.order.exact)
     minimal.order.highest = dense.order();
-  if (!asked) count(minimal.order.decided());
+  if (!asked) count(exact_limits(minimal.order));
   std::optional<Change> by = lower_to(exact, d, dense, judged, minimal);
   const bool ports = !dense.inputs.empty() && !dense.outputs.empty();
   if (!ports) doubt_unmeasured(minimal.order);
@@ -250,7 +252,7 @@ void minimize_checked(const SystemData& d, DenseModel& m) {
     if (untried)
       minimal.notes.back() =
           "nothing was removed: near the removed modes the factors have no digit";
-    if (!asked && !exact.decided) count(minimal.order.decided());
+    if (!asked && !exact.decided) count(exact_limits(minimal.order));
     if (!lower_to(exact, d, dense, judged, minimal)) {
       m.notes.push_back({Note::Kind::warning, "minimize",
                          fmt::format("{}: {}", minimal.notes.back(), minimal.notes.front())});
@@ -262,17 +264,18 @@ void minimize_checked(const SystemData& d, DenseModel& m) {
     m.notes.push_back(
         {removed ? Note::Kind::removed : Note::Kind::info, "minimize", std::move(text)});
   m.order = std::move(minimal.order);
-  if (removed) dense = std::move(minimal.model);
+  if (removed) m.model = std::make_shared<const StateSpace>(std::move(minimal.model));
 }
 
 }  // namespace
 
 }  // namespace titop::detail
 
-titop::detail::DenseModel titop::steps::minimize(const detail::SystemData& data,
-                                                 detail::DenseModel m) {
+titop::detail::Minimal titop::steps::minimize(const detail::SystemData& data,
+                                              const detail::Realization& written) {
   const Options& options = data.skeleton->options;
-  const int states = m.model.order();
+  const int states = written.model->order();
+  detail::Minimal m{.model = written.model};
   m.order.order = m.order.highest = states;
   m.order.judged = states == 0;
   const int up_to =
@@ -282,6 +285,6 @@ titop::detail::DenseModel titop::steps::minimize(const detail::SystemData& data,
                        fmt::format("not run: {} states are more than {} (Options::minimize_up_to)",
                                    states, up_to)});
   else if (states > 0)
-    detail::minimize_checked(data, m);
+    detail::minimize_checked(data, written, m);
   return m;
 }

@@ -16,17 +16,19 @@ namespace titop {
 
 namespace {
 
-using detail::DenseModel;
+using detail::Minimal;
+using detail::Realization;
 using detail::SystemData;
 using steps::Compiled;
 
-using OnGraph = Stage (*)(Stage);                               ///< compiler/passes/passes.hpp
-using OnNumbers = Compiled (*)(Compiled);                       ///< compiler/system/steps.hpp
-using OnDense = DenseModel (*)(const SystemData&, DenseModel);  ///< the same
+using OnGraph = Stage (*)(Stage);                      ///< compiler/passes/passes.hpp
+using OnNumbers = Compiled (*)(Compiled);              ///< compiler/system/steps.hpp
+using OnFactors = Realization (*)(const SystemData&);  ///< the same
+using OnRealization = Minimal (*)(const SystemData&, const Realization&);  ///< the same
 
 struct Pass {
   CompilerPass is;
-  std::variant<OnGraph, OnNumbers, OnDense> run;
+  std::variant<OnGraph, OnNumbers, OnFactors, OnRealization> run;
   bool (*runs)(const Compiled&) = nullptr;  ///< CompilerPass::when; none: always
 };
 
@@ -204,11 +206,12 @@ std::shared_ptr<const SystemData> compile_stage(Stage begin, const Options& opti
 
 DenseModel dense_model(const SystemData& data) {
   DenseModel m;
-  std::vector<std::pair<std::string, double>> seconds;
-  for (const Pass& pass : kPasses)
-    if (const auto* on_dense = std::get_if<OnDense>(&pass.run))
-      timed(seconds, pass.is.name, [&] { m = (*on_dense)(data, std::move(m)); });
-  m.seconds = std::move(seconds);
+  for (const Pass& pass : kPasses) {
+    if (const auto* on_factors = std::get_if<OnFactors>(&pass.run))
+      timed(m.seconds, pass.is.name, [&] { m.written = (*on_factors)(data); });
+    else if (const auto* on_realization = std::get_if<OnRealization>(&pass.run))
+      timed(m.seconds, pass.is.name, [&] { m.minimal = (*on_realization)(data, m.written); });
+  }
   return m;
 }
 

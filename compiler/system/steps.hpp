@@ -59,12 +59,12 @@ bool has_data(const Compiled& c);
 /// asks it whether digits are lost.
 Compiled certify(Compiled c);
 
-/// DenseModel::model, error: A, B, C, D are written from the factors and compared with them.
-/// O(n^2); see compiler/certificate/dense_check.hpp. Throws not_finite.
-detail::DenseModel dense(const detail::SystemData& data, detail::DenseModel model);
+/// A, B, C, D are written from the factors and compared with them. O(n^2); see
+/// compiler/certificate/dense_check.hpp. Throws not_finite.
+detail::Realization dense(const detail::SystemData& data);
 
-/// DenseModel::order: the model is minimal, up to Options::minimize_up_to states, if the change of
-/// its transfer near the removed modes is below 1e-8 (or ten times Options::resolution). O(n^3).
-detail::DenseModel minimize(const detail::SystemData& data, detail::DenseModel model);
+/// The model is minimal, up to Options::minimize_up_to states, if the change of its transfer near
+/// the removed modes is below 1e-8 (or ten times Options::resolution). O(n^3).
+detail::Minimal minimize(const detail::SystemData& data, const detail::Realization& written);
 
 }  // namespace titop::steps

@@ -71,9 +71,9 @@ const detail::DenseModel& System::dense() const {
   return data_->dense.get([&] { return detail::dense_model(*data_); });
 }
 
-const StateSpace& System::state_space() const& { return dense().model; }
+const StateSpace& System::state_space() const& { return *dense().minimal.model; }
 
-const OrderVerdict& System::order_verdict() const& { return dense().order; }
+const OrderVerdict& System::order_verdict() const& { return dense().minimal.order; }
 
 const std::vector<std::pair<std::string, double>>& System::dense_seconds() const& {
   return dense().seconds;
@@ -127,7 +127,8 @@ Certificate with_dense(Certificate c, double against_factors, const detail::Dens
 Certificate System::certificate() const { return data_->checked().certificate; }
 
 Certificate System::dense_certificate() const {
-  return with_dense(certificate(), dense().against_factors, dense().error);
+  const detail::Realization& written = dense().written;
+  return with_dense(certificate(), written.against_factors, written.error);
 }
 
 Certificate System::certificate(const StateSpace& written) const {
@@ -159,8 +160,9 @@ std::string System::log() const {
 const std::vector<Note>& System::dense_notes() const& {
   const detail::DenseModel& m = dense();
   return data_->all_dense_notes.get([&] {
-    std::vector<Note> all = m.notes;
-    if (m.order.judged && detail::has_damped_bodies(*data_)) try {
+    std::vector<Note> all = m.written.notes;
+    all.insert(all.end(), m.minimal.notes.begin(), m.minimal.notes.end());
+    if (m.minimal.order.judged && detail::has_damped_bodies(*data_)) try {
         const std::vector<Note> more = detail::damping_notes(poles());
         all.insert(all.end(), more.begin(), more.end());
       } catch (const Error&) {

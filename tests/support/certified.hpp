@@ -25,7 +25,7 @@ struct FaultCount {
 inline titop::System with_minimal_model(const titop::Diagram& d, titop::detail::DenseModel dense,
                                         const titop::StateSpace& minimal) {
   const auto data = titop::detail::compile_graph(d.graph(), {});
-  dense.model = minimal;
+  dense.minimal.model = std::make_shared<const titop::StateSpace>(minimal);
   data->dense.get([&] { return dense; });
   return titop::System(data);
 }
