@@ -149,7 +149,7 @@ void make_proper(Skeleton& k, Factored& d, const InputDerivatives& v) {
   for (Index i = 0; i < e.shifts[0].rows(); ++i)
     if (!e.shifts[0].row(i).isZero(0)) names.push_back(d.state_names()[at(i)]);
   if (!names.empty())
-    k.stage.notes.push_back(
+    d.notes.push_back(
         {Note::Kind::info, "reduce",
          fmt::format(
              "states from which a multiple of the inputs at points without mass is subtracted: {}",

@@ -88,7 +88,7 @@ class Reducer {
       if (!held_.insert(groups.of(row)).second)
         refuse(rest, motions.lines, {"set to 0 it is still undetermined"});
     for (const std::string& line : motions.lines)
-      k_.stage.notes.push_back(
+      d_.notes.push_back(
           {Note::Kind::info, "reduce", line + ", and no output depends on it: set to 0"});
     leave_out(motions.states);
     NewRows held(k_, d_);
@@ -125,10 +125,9 @@ class Reducer {
         return states[at(d_.layout().state_first[at(s.node)] + s.state)] != 0;
       });
     d_.states = StateMap(all, d_.layout());
-    k_.stage.notes.push_back(
-        {Note::Kind::info, "reduce",
-         fmt::format("states that only integrate these motions are removed: {}",
-                     some_names(names))});
+    d_.notes.push_back({Note::Kind::info, "reduce",
+                        fmt::format("states that only integrate these motions are removed: {}",
+                                    some_names(names))});
   }
 
   static bool says_nothing(const Hidden& c) {
@@ -247,7 +246,7 @@ class Reducer {
     d_.states = StateMap(k_.stage.dependents, d_.layout());
     std::vector<std::string> names;
     for (const int state : followers_.added()) names.push_back(d_.layout().states[at(state)]);
-    k_.stage.notes.push_back(
+    d_.notes.push_back(
         {Note::Kind::info, "reduce",
          fmt::format("{} states are determined by the others at points without mass: {}",
                      names.size(), some_names(names))});
@@ -276,14 +275,14 @@ class AsWritten {
   AsWritten(const Skeleton& k, const Factored& d)
       : joint_(k.joint),
         dependents_(k.stage.dependents),
-        notes_(k.stage.notes.size()),
+        notes_(d.notes.size()),
         coefficients_(d.numbers.coefficients.size()),
         states_(d.states) {}
 
   void restore(Skeleton& k, Factored& d) && {
     k.joint = std::move(joint_);
     k.stage.dependents = std::move(dependents_);
-    k.stage.notes.resize(notes_);
+    d.notes.resize(notes_);
     d.numbers.coefficients.resize(coefficients_);
     d.states = std::move(states_);
   }

@@ -32,7 +32,7 @@ struct Writing;
 /// The data that do not depend on numbers: shared by all systems that `update` makes of one
 /// another.
 struct Skeleton {
-  Stage stage;  ///< after the passes
+  Stage stage;  ///< after the passes on the graph
   Options options;
   solve::JointSystem joint;                         ///< of the state space: regular
   std::optional<solve::JointSystem> before_reduce;  ///< as written, if that is singular there
@@ -63,7 +63,7 @@ struct Factored {
   int plans_renewed = 0;                                ///< by updates since
   std::vector<double> scaled_at;                        ///< parameters when the scaling was found
   solve::Health scaled_health;                          ///< of the factors then
-  std::vector<Note> notes;                              ///< of `digits`, and of updates
+  std::vector<Note> notes;                              ///< of the passes with numbers, of updates
   std::vector<std::pair<std::string, double>> seconds;  ///< per pass
 
   mutable std::once_flag zeros_once;

@@ -13,6 +13,13 @@
 #include <titop/graph/data_digits.hpp>
 
 namespace titop::steps {
+namespace {
+
+void add_notes(const std::vector<Note>& more, detail::SystemData& d) {
+  d.notes.insert(d.notes.end(), more.begin(), more.end());
+}
+
+}  // namespace
 
 Compiled layout(Compiled c) {
   detail::Skeleton& k = *c.skeleton;
@@ -44,7 +51,7 @@ Compiled depend(Compiled c) {
   k.dependents = detail::find_dependents(k.stage, k.joint);
   for (std::size_t i = 0; i < k.dependents.size(); ++i)
     if (k.dependents[i].nodes.empty() && k.dependents[i].origins.empty())
-      k.stage.notes.push_back(
+      c.data->notes.push_back(
           {Note::Kind::info, "depend",
            fmt::format("parameter {}: nothing depends on it", k.stage.graph.parameters[i].name)});
   return c;
@@ -57,9 +64,9 @@ Compiled solve(Compiled c) {
       k.joint.plan, detail::real_rows(k, d.numbers));
   d.scaled_at = d.numbers.parameters;
   d.scaled_health = d.factors->health();
-  k.stage.notes.push_back({Note::Kind::info, "solve",
-                           fmt::format("{} unknowns in {} fronts", k.joint.plan->unknowns,
-                                       k.joint.plan->fronts.size())});
+  d.notes.push_back({Note::Kind::info, "solve",
+                     fmt::format("{} unknowns in {} fronts", k.joint.plan->unknowns,
+                                 k.joint.plan->fronts.size())});
   return c;
 }
 
@@ -90,9 +97,7 @@ Compiled reduce(Compiled c) {
 bool is_overconstrained(const Compiled& c) { return !c.skeleton->stage.released.empty(); }
 
 Compiled forces(Compiled c) {
-  const std::vector<Note> found = detail::judge_internal_forces(*c.data);
-  std::vector<Note>& notes = c.skeleton->stage.notes;
-  notes.insert(notes.end(), found.begin(), found.end());
+  add_notes(detail::judge_internal_forces(*c.data), *c.data);
   return c;
 }
 
@@ -104,7 +109,7 @@ bool has_data(const Compiled& c) {
 }
 
 Compiled digits(Compiled c) {
-  c.data->notes = detail::judge_data_digits(*c.data);
+  add_notes(detail::judge_data_digits(*c.data), *c.data);
   return c;
 }
 

@@ -298,7 +298,9 @@ std::shared_ptr<const SystemData> updated(const SystemData& old,
   refactor(old, changed, *d);
   const solve::Health health = d->factors->health();
   if (health.singular) return again(kNoDigit);  // it may reduce: a mass of 0
-  d->notes = judge_data_digits(*d);
+  std::ranges::copy_if(old.notes, std::back_inserter(d->notes),
+                       [](const Note& n) { return n.pass != "digits" && n.pass != "update"; });
+  std::ranges::copy(judge_data_digits(*d), std::back_inserter(d->notes));
   d->notes.push_back(
       {Note::Kind::info, "update",
        fmt::format("{}: {} of {} fronts recomputed", text_of(k, changed, d->numbers.parameters),
