@@ -167,9 +167,9 @@ Index Writing::width(std::size_t batch) const {
 }
 
 std::shared_ptr<const Writing> writing_of(const Factored& data) {
-  const Skeleton& k = *data.skeleton;
-  std::call_once(k.writing_once, [&] { k.writing = std::make_shared<const Writing>(data); });
-  return k.writing->fits(data) ? k.writing : std::make_shared<const Writing>(data);
+  const auto make = [&] { return std::make_shared<const Writing>(data); };
+  const std::shared_ptr<const Writing>& common = data.skeleton->writing.get(make);
+  return common->fits(data) ? common : make();
 }
 
 }  // namespace titop::detail

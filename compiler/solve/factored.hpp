@@ -1,13 +1,13 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <titop/compiler/passes/options.hpp>
 #include <titop/compiler/solve/layout.hpp>
 #include <titop/compiler/solve/numbers.hpp>
 #include <titop/compiler/solve/state_map.hpp>
+#include <titop/graph/support/once.hpp>
 #include <utility>
 #include <vector>
 
@@ -39,8 +39,7 @@ struct Skeleton {
   Layout layout;
   std::vector<Dependents> dependents;  ///< per parameter
 
-  mutable std::once_flag writing_once;
-  mutable std::shared_ptr<const Writing> writing;  ///< see writing_of
+  Once<std::shared_ptr<const Writing>> writing;  ///< see writing_of
 
   /// The equations as written: for transfers, which need no state space.
   const solve::JointSystem& as_written() const { return before_reduce ? *before_reduce : joint; }
@@ -66,8 +65,7 @@ struct Factored {
   std::vector<Note> notes;                              ///< of the passes with numbers, of updates
   std::vector<std::pair<std::string, double>> seconds;  ///< per pass
 
-  mutable std::once_flag zeros_once;
-  mutable Eigen::MatrixX<bool> zeros;
+  Once<Eigen::MatrixX<bool>> zeros;  ///< see zero_blocks
 
   const Graph& graph() const { return skeleton->stage.graph; }
   const Layout& layout() const { return skeleton->layout; }

@@ -72,15 +72,14 @@ std::optional<Eigen::MatrixX<bool>> zeros_in(const Factored& d) {
 }  // namespace
 
 const Eigen::MatrixX<bool>& Factored::zero_blocks() const {
-  std::call_once(zeros_once, [&] {
+  return zeros.get([&] {
     auto found = zeros_in<std::complex<solve::DoubleDouble>>(*this);
     if (!found) found = zeros_in<solve::Complex50>(*this);
-    zeros = found ? std::move(*found)
-                  : Eigen::MatrixX<bool>::Constant(
-                        groups_of_outputs(*this, all_outputs(*this)).size(),
-                        groups_of_inputs(*this, all_inputs(*this)).size(), true);
+    if (found) return std::move(*found);
+    return Eigen::MatrixX<bool>(
+        Eigen::MatrixX<bool>::Constant(groups_of_outputs(*this, all_outputs(*this)).size(),
+                                       groups_of_inputs(*this, all_inputs(*this)).size(), true));
   });
-  return zeros;
 }
 
 void Factored::clear_zero_outputs(solve::RowMatrix<double>& outputs) const {
