@@ -9,8 +9,8 @@ using Eigen::MatrixXd;
 double DualTransfers::floor(Eigen::Index row, Eigen::Index column, Eigen::Index rows,
                             Eigen::Index columns) const {
   if (by.terms.size() == 0) return 0;
-  return detail::kOfTerms * std::max(by.terms.block(row, column, rows, columns).maxCoeff(),
-                                     by.terms.block(column, row, columns, rows).maxCoeff());
+  return detail::kLeastSize * std::max(by.terms.block(row, column, rows, columns).maxCoeff(),
+                                       by.terms.block(column, row, columns, rows).maxCoeff());
 }
 
 DualTransfers dual_transfers(const passes::DualPairs& pairs,

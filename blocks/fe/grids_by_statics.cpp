@@ -51,7 +51,7 @@ namespace {
 /// Rows of R of a grid, by component (0 to 5).
 using GridRows = std::map<int, Eigen::Matrix<double, 1, 6>>;
 
-constexpr double kLeastDigits = 1e-3;  ///< positions of fewer than three digits are of no use
+using linalg::kThreeDigits;  ///< positions that have fewer are of no use
 
 /// R by statics, and the errors of its rows that errors of K make.
 class Statics {
@@ -208,7 +208,7 @@ std::vector<Grid> grids_by_statics(const GridMatrices& m, int grid) {
   std::vector<Grid> grids;
   for (const auto& [id, p] : placed) {
     const double off = p.misfit(size), limit = p.explained(size);
-    if (off > std::min(limit, kLeastDigits)) refuse_flexible(m, id, grid, off, limit);
+    if (off > std::min(limit, kThreeDigits)) refuse_flexible(m, id, grid, off, limit);
     const bool turned = p.frame != Matrix3d::Identity();
     grids.push_back({id, p.position, turned ? Rotation::matrix(p.frame) : Rotation(), {}, off});
   }

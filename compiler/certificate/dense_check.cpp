@@ -292,7 +292,7 @@ DenseError dense_error(const Factored& d, const StateSpace& m) {
     }
     found = worst_of(samples);
   }
-  if (found.where_small.error > kLostWhereSmall) found.where_used = where_used(samples, m.A);
+  if (found.where_small.error > kSixDigits) found.where_used = where_used(samples, m.A);
   found = by_input(found, static_cast<int>(units.cols.size()));
   found.not_tried = std::move(not_tried);
   return found;

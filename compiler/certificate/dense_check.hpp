@@ -7,10 +7,6 @@
 
 namespace titop::detail {
 
-/// Error beside small outputs above which a warning is due: an acceleration far below the modes
-/// always loses some digits.
-inline constexpr double kLostWhereSmall = 1e-6;
-
 /// Rounding error of the dense model, and its place: see Certificate::dense_error and below.
 struct DenseError {
   struct Worst {

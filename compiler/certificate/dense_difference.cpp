@@ -95,7 +95,7 @@ double beside_terms(const MatrixXd& off, const ModelColumns& r, const Groups& gr
       if (noise.size() > 0 && largest(r.value) <= kNoise * largest(noise))
         size = std::max(size, largest(noise));
       if (largest(r.value) == 0)  // hit to the last bit, as another order of sums may not
-        size = std::max(size, kEpsilon * kHitBy * around(first, count, j));
+        size = std::max(size, kEpsilon * kLeastSize * around(first, count, j));
       if (size > 0) worst = std::max(worst, kEpsilon * (largest(off) / size));
     }
   return worst;

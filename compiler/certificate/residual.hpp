@@ -1,14 +1,14 @@
 #pragma once
 
 #include <titop/compiler/solve/factored.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 /// Residual of the equations, as the user wrote them and as the blocks define them. For the
 /// compiler's own files only.
 namespace titop::detail {
 
-/// Larger errors are reported in the log: six digits less than double has. A dense model's are
-/// computed a second time first.
-inline constexpr double kWarn = 1e-9;
+/// Larger errors are reported in the log. A dense model's are computed a second time first.
+using linalg::kWarn;
 /// Times the rounding of a value: it has a digit; times another error: it is one digit worse.
 inline constexpr double kAnotherDigit = 10;
 

@@ -20,8 +20,6 @@ using Eigen::MatrixXd;
 /// Floor of sizes, relative to neighbours: a 0 in 32 digits may be 1e-26, which is then 1e-8 of
 /// this, the limit; in double it is 1e-17.
 constexpr double kFinest = 1e-18;
-/// Relative to neighbours: more rounding means lost digits, not a 0 that double misses.
-constexpr double kOfNothing = 1e-6;
 
 using linalg::at;
 
@@ -42,7 +40,7 @@ MatrixXd largest(const std::vector<MatrixXcd>& list) {
 
 MatrixXd block_sizes(const std::vector<MatrixXcd>& exact, const Measure& by) {
   const MatrixXd size = by_block(largest(exact), by);
-  return by.terms.size() > 0 ? size.cwiseMax(kOfTerms * by_block(by.terms, by)) : size;
+  return by.terms.size() > 0 ? size.cwiseMax(kLeastSize * by_block(by.terms, by)) : size;
 }
 
 template <class List>
@@ -128,7 +126,7 @@ MatrixXd of_nothing(const MatrixXd& terms, const std::vector<MatrixXcd>& exact) 
   const MatrixXd size = largest(exact);
   const MatrixXd around = size.rowwise().maxCoeff().cwiseSqrt() *
                           Eigen::RowVectorXd(size.colwise().maxCoeff().cwiseSqrt());
-  const double limit = kOfNothing / linalg::kEpsilon;
+  const double limit = kSixDigits / linalg::kEpsilon;
   return (around.array() == 0 || terms.array() <= limit * around.array()).select(terms, 0);
 }
 
@@ -156,7 +154,7 @@ void add_rounding(Measure& measure, const std::vector<MatrixXcd>& exact, const M
       if (size(i, j) > kNoise * rounding(i, j)) continue;
       auto block = measure.terms.block(r, c, measure.rows[at(i)], measure.cols[at(j)]);
       block = block.cwiseMax(terms.block(r, c, block.rows(), block.cols())).eval();
-      if (size(i, j) == 0) block = block.cwiseMax(kHitBy * output(i) * input(j)).eval();
+      if (size(i, j) == 0) block = block.cwiseMax(kLeastSize * output(i) * input(j)).eval();
     }
 }
 

@@ -11,12 +11,14 @@ namespace titop::detail {
 
 using linalg::kNoise;
 
-/// Share of the terms of an entry that is its size if they cancel further: double has no better
-/// accuracy than 1e-15 of them.
-inline constexpr double kOfTerms = 1e-3;
-/// Floor of a zero entry, relative to its neighbours: in one order of summation the terms of a 0
-/// cancel exactly, in another to 1e-17.
-inline constexpr double kHitBy = 1e-3;
+/// Least size of an entry, relative to its terms: if they cancel further, double has no better
+/// accuracy than 1e-15 of them. Of a 0 to the last bit, whose terms cancel to 1e-17 in another
+/// order of summation, relative to its neighbours.
+inline constexpr double kLeastSize = 1e-3;
+/// Six digits. Of terms relative to their neighbours: with more rounding an entry has lost digits,
+/// and is no 0 that double misses. Of an entry in two computations: it is certain if they agree to
+/// this. Of an output far below its peak: a larger error is reported.
+inline constexpr double kSixDigits = 1e-6;
 
 /// Scales for the comparison of two transfers. Three translations (or rotations) of one port share
 /// their unit: such blocks of 3 x 3, and single scalars, have one size.

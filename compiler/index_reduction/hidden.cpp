@@ -111,7 +111,7 @@ int Followers::choose(const Hidden& c) const {
     if (before_[at(i)] && size > linalg::kTie * largest_before)
       largest_before = size, best_before = i;
   }
-  return largest_before >= loops::kGoodPivot * largest ? best_before : best;
+  return largest_before >= loops::kThreeDigits * largest ? best_before : best;
 }
 
 void Followers::follow(int state, const Hidden& c) {

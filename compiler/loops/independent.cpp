@@ -30,13 +30,12 @@ struct PivotRows {
 };
 
 /// Rounding of the rows of T = -pivots^-1 rest: each entry of both, in rows of norm 1 or less, is a
-/// sum of products of a few rotations and positions, off by a few units of that norm.
+/// sum of products of a few rotations and positions, off by four units of that norm.
 Eigen::VectorXd rounding_by(const MatrixXd& pivots, const MatrixXd& T) {
-  constexpr double kUnits = 4 * 2.2e-16;
   MatrixXd inverse = MatrixXd::Identity(pivots.rows(), pivots.rows());
   pivots.triangularView<Eigen::Upper>().solveInPlace(inverse);
   const double most = T.size() > 0 ? std::max(1.0, T.cwiseAbs().maxCoeff()) : 1;
-  return kUnits * most * inverse.cwiseAbs().rowwise().sum();
+  return 4 * linalg::kEpsilon * most * inverse.cwiseAbs().rowwise().sum();
 }
 
 struct Fronts {
@@ -83,7 +82,7 @@ struct Fronts {
   bool take_unknowns(const RowBlock& front, bool last, Reflections& e) {
     const auto is_unknown = [&](int c) { return role[at(c)] == Role::unknown; };
     const auto unknowns = own(front, is_unknown);
-    const double left = e.take(unknowns, last ? kMatrixDigits : kGoodPivot);
+    const double left = e.take(unknowns, last ? kMatrixDigits : kThreeDigits);
     if (left > kMatrixDigits) return false;
     result.dropped = std::max(result.dropped, left);
     return std::count_if(front.columns.begin(), front.columns.end(), is_unknown) ==
@@ -107,13 +106,13 @@ struct Fronts {
     const auto integrals = own(front, is(Role::integral));
     const auto all = own(front, [&](int c) { return role[at(c)] != Role::unknown; });
     if (last) return take_last(front, {known, integrals, all}, e);
-    e.take(known, kGoodPivot);
-    e.take(integrals, kGoodPivot);
+    e.take(known, kThreeDigits);
+    e.take(integrals, kThreeDigits);
     // Rows may wait for preferred columns: see take_beside.
     if (shared_preferred(front).empty()) {
       std::vector<int> rivals(front.columns.size());
       std::iota(rivals.begin(), rivals.end(), 0);
-      e.take(all, kGoodPivot, {soft(front.columns), kOneDigit, std::move(rivals)});
+      e.take(all, kThreeDigits, {soft(front.columns), kOneDigit, std::move(rivals)});
     }
     return e.weakest();
   }
@@ -126,7 +125,7 @@ struct Fronts {
     result.dropped = std::max(result.dropped, rank.take(choices.back(), kMatrixDigits));
     Reflections::PivotChoice choice{soft(front.columns)};
     for (choice.most = e.done() + 1; choice.most <= rank.done(); ++choice.most) {
-      const double least = kGoodPivot * e.largest(choices.back());
+      const double least = kThreeDigits * e.largest(choices.back());
       for (const std::vector<int>& columns : choices) e.take(columns, least, choice);
     }
     return rank.weakest();
@@ -158,11 +157,11 @@ struct Fronts {
       if (!e.taken(i)) (uses.alone(front.columns[at(i)]) ? alone : shared).push_back(i);
     Reflections waiting(std::move(rows));
     const Eigen::VectorXd worth = soft(front.columns);
-    waiting.take(shared_preferred(front), kMatrixDigits, {worth, kGoodPivot, alone});
+    waiting.take(shared_preferred(front), kMatrixDigits, {worth, kThreeDigits, alone});
     waiting.take(shared, kMatrixDigits, {worth, 1 / kOneDigit, alone});
     const Index wait = waiting.done();
     Reflections o(waiting.matrix().bottomRows(waiting.matrix().rows() - wait));
-    o.take(alone, kGoodPivot, {worth});
+    o.take(alone, kThreeDigits, {worth});
     result.weakest = std::min(result.weakest, o.weakest());
     keep(front, o);
     MatrixXd left(waiting.matrix().rows() - o.done(), waiting.matrix().cols());

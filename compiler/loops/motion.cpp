@@ -148,7 +148,7 @@ std::optional<Motion::Edge> Motion::edge_of(const Tie& tie) const {
   const bool six = c.cols() == 6, orthonormal = has_orthonormal_rows(c);
   e.rigid = six ? tie.rotation.has_value() : orthonormal;
   if (!orthonormal &&
-      (c.rows() != c.cols() || free.rows() > 0 || !(linalg::inverse(c).rcond > kGoodPivot)))
+      (c.rows() != c.cols() || free.rows() > 0 || !(linalg::inverse(c).rcond > kThreeDigits)))
     return std::nullopt;
   // Freedom of the joint is counted from the other side: any completion of c suffices. One that
   // moves both points as one body has no gap.

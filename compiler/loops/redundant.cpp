@@ -92,7 +92,7 @@ struct RedundancyFinder {
     MatrixXd M(block.M.rows(), block.M.cols() + directions[at(b)].cols());
     M << block.M, directions[at(b)];
     Reflections e(std::move(M));
-    e.take(own, kGoodPivot);
+    e.take(own, kThreeDigits);
     if (e.done() == 0) return;
     directions[at(b)] =
         e.matrix().bottomRightCorner(block.M.rows() - e.done(), directions[at(b)].cols());
@@ -191,7 +191,7 @@ struct RedundancyFinder {
     const std::vector<int> own = places(known.columns, closed);
     if (own.empty()) return;
     Reflections e(known.M);
-    e.take(own, kGoodPivot);
+    e.take(own, kThreeDigits);
     if (e.done() > 0) known = rest(known.columns, e, closed);
   }
 

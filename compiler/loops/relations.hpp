@@ -17,7 +17,7 @@ constexpr double kNarrow = 1e-4, kNothing = 1e-12;
 
 /// Of the best: a pivot that is taken before the best ones are known, or kept since it was chosen
 /// before. It may cost three digits.
-constexpr double kGoodPivot = 1e-3;
+using linalg::kThreeDigits;
 
 /// Rows with the columns in which they have entries: M is rows x columns.
 struct RowBlock {

@@ -12,8 +12,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kNoTerm = 1e-12;  ///< of the terms of a sum: a smaller sum is rounding
-
 using linalg::at;
 
 /// Modes of one frequency are counted as equal if their dampings are equal, too. Sorts those of one
@@ -70,7 +68,7 @@ void turn_clusters(const CoordinatePorts& p, const ModeSet& m, MatrixXd& Q) {
 /// Entries of Q'c that are above the rounding of their terms; 0 for the others.
 MatrixXd clear(const MatrixXd& Q, const MatrixXd& c) {
   const MatrixXd in = Q.transpose() * c, terms = Q.cwiseAbs().transpose() * c.cwiseAbs();
-  return (in.array().abs() <= kNoTerm * terms.array()).select(0, in);
+  return (in.array().abs() <= linalg::kSumsOfSums * terms.array()).select(0, in);
 }
 
 /// An output that reads positions and rates, C = cq + s cv at each pole s, if that is more than

@@ -17,7 +17,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kSmallShare = 1e-4;  ///< of a mode in another by rounding, at most
-constexpr double kCleared = 1e-12;    ///< a product of two vectors over their sizes, by rounding
 
 using linalg::at;
 
@@ -306,7 +305,7 @@ void take_out(const General& g, const std::vector<Verdict>& verdicts, StateSpace
   LeavingSides l{{left, real_rows(V(unreachable, Eigen::all), unreachable).transpose()},
                  {real_rows(g.e.W(unseen, Eigen::all), unseen), right.transpose()},
                  scale,
-                 kCleared};
+                 linalg::kSumsOfSums};
   for (const WholeCluster& c : g.modes.wholes) {
     add(c.part.unreachable, c, l.undriven);
     add(c.part.unseen, c, l.unseen);

@@ -80,9 +80,8 @@ class DenseWriter {
  private:
   /// To wake a thread and wait for it takes longer than to write a small model.
   int threads(std::size_t batches) const {
-    constexpr double kWorthIt = 5e4;  // entries of the solutions, about 2 ns each
-    const double entries =
-        static_cast<double>(batches * std::size_t{Writing::kBatch}) * k_.joint.plan->unknowns;
+    constexpr std::size_t kWorthIt = 50'000;  // entries of the solutions, about 2 ns each
+    const std::size_t entries = batches * Writing::kBatch * at(k_.joint.plan->unknowns);
     return entries < kWorthIt ? 1 : threads_;
   }
 

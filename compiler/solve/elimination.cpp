@@ -224,7 +224,7 @@ struct Factors<T>::Work {
   double kept(int i) {
     double share = 0;
     for (std::ptrdiff_t j = pivots; j < n; ++j) {
-      if (size_of(row(i)[j]) > kOrdinary * bounds(i)[j]) return 1;
+      if (size_of(row(i)[j]) > kOrdinaryLoss * bounds(i)[j]) return 1;
       if (bounds(i)[j] > 0) share = std::max(share, size_of(row(i)[j]) / bounds(i)[j]);
     }
     return share == 0 ? 1 : share;

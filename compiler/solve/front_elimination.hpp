@@ -27,12 +27,12 @@ inline double largest_of(std::ptrdiff_t n, Entry entry) {
 
 /// Losses up to this are ordinary: they must not add up from row to row of a wide front (as a
 /// product they would grow exponentially with its width), nor along a chain of fronts.
-constexpr double kOrdinary = 1e-6;
+constexpr double kOrdinaryLoss = 1e-6;
 
 /// The magnitude of an entry of a pivot row in the sums of others: its own, or that of its terms if
 /// it has lost more than is ordinary.
 inline double pivot_row_magnitude(double size, double bound) {
-  return size > kOrdinary * bound ? size : bound;
+  return size > kOrdinaryLoss * bound ? size : bound;
 }
 
 /// One step of elimination in a rows x n array: below row k, right of column k up to column `end`.

@@ -45,7 +45,7 @@ Eigen::ArrayXd errors_left_of_known_solution(const Factored& d) {
   const RowMatrix<Complex50> goal = solve::lifted<Complex50>(x), rhs = right_hand_side(rows, goal);
   RowMatrix<Complex50> found = RowMatrix<Complex50>::Zero(x.rows(), x.cols());
   Eigen::ArrayXd errors = Eigen::ArrayXd::Ones(x.rows());
-  for (int step = 0; step < kMostRefined && !(errors <= kKnown).all(); ++step) {
+  for (int step = 0; step < kMostRefined && !(errors <= kThreeDigits).all(); ++step) {
     found +=
         solve::lifted<Complex50>(d.factors->solve(in_double(rows.residual(rhs, found)).real()));
     errors = in_double(found - goal).real().cwiseQuotient(x).cwiseAbs().reshaped();

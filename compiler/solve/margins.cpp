@@ -14,10 +14,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using linalg::at;
 
-/// At distance delta from singular a margin is about 4 / delta: above this limit the last two units
-/// of a loop's own numbers determine every digit of the solution.
-constexpr double kWithoutDigit = 2 / linalg::kEpsilon;
-
 /// Powers of length and of force in a number's unit. Scalars may have any unit: only the power of
 /// force is used.
 struct Unit {
@@ -182,7 +178,9 @@ WellPosedness judge_margins(const Stage& stage, std::span<const double> margins)
       continue;
     }
     result.without_inverse += margins[i] == 0;
-    if ((margins[i] == 0 || margins[i] > kWithoutDigit) && result.without_digit < 0)
+    // At distance delta from singular a margin is about 4 / delta: above 2 / eps the last two units
+    // of a loop's own numbers determine every digit of the solution.
+    if ((margins[i] == 0 || margins[i] > 2 / linalg::kEpsilon) && result.without_digit < 0)
       result.without_digit = static_cast<int>(i);
     if (margins[i] <= result.largest) continue;
     result.largest = margins[i];

@@ -20,7 +20,8 @@ bool without_digit(const Factored& d, const Loop& loop, const Eigen::ArrayXd& er
   const solve::Plan& plan = *joint.plan;
   for (const int signal : loop.signals)
     if (const int v = joint.variable_of[at(signal)]; v >= 0)
-      if (!(errors.segment(plan.first[at(v)], plan.structure.variable_size[at(v)]) <= kKnown).all())
+      if (!(errors.segment(plan.first[at(v)], plan.structure.variable_size[at(v)]) <= kThreeDigits)
+               .all())
         return true;
   return false;
 }
@@ -63,7 +64,7 @@ WeakPivots judge_weak_pivots(const Factored& d, std::span<const double> margins)
     return {};
   // Not after reduction: loops of the equations as written may then be singular.
   if (loops.without_digit >= 0 && !k.before_reduce) return {.least = kLeftOfZero};
-  if ((errors_left_of_known_solution(d) <= kKnown).all()) return {};
+  if ((errors_left_of_known_solution(d) <= kThreeDigits).all()) return {};
   return {.least = std::clamp(2 * weakest, kLeftOfZero, solve::kCancelled)};
 }
 

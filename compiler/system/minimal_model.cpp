@@ -23,10 +23,6 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using linalg::at;
 
-/// Part of an entry of the transfer in which finer arithmetic and the dense model must agree for
-/// the model to be certain, and least visibility of a mode that counts then.
-constexpr double kCertain = 1e-6;
-
 /// The reason by the certificate of the factors why the order may be in doubt; null: none.
 const char* digits_lost(const SystemData& d) {
   if (d.checked().digits_lost) return "digits are lost (see certify)";
@@ -34,7 +30,7 @@ const char* digits_lost(const SystemData& d) {
 }
 
 /// The model with only those inputs and outputs whose dynamics are not rounding: in some entry, the
-/// change with s agrees with finer arithmetic.
+/// change with s agrees with finer arithmetic to six digits.
 StateSpace with_certain_ports(const SystemData& d, const StateSpace& m) {
   const std::complex<double> s = pick_s(d);
   const auto transfers = [&](std::complex<double> z) {
@@ -48,7 +44,7 @@ StateSpace with_certain_ports(const SystemData& d, const StateSpace& m) {
     const MatrixXd change = (other_exact - exact).cwiseAbs();
     const MatrixXd off = (other_dense - dense - (other_exact - exact)).cwiseAbs();
     certain = certain.array() ||
-              (change.array() > kWarn * size.array() && off.array() <= kCertain * change.array());
+              (change.array() > kWarn * size.array() && off.array() <= kSixDigits * change.array());
   }
   StateSpace part{m.A, {}, {}, {}, m.states, {}, {}, m.rates};
   std::vector<int> in, out;
@@ -68,14 +64,12 @@ bool has_output_of_rounding(const SystemData& d, const StateSpace& m) try {
   const std::complex<double> s = pick_s(d);
   const MatrixXd exact = transfer_of(d, s).cwiseAbs(),
                  dense = refined_transfers(m, {s}).front().cwiseAbs();
-  return (exact.rowwise().maxCoeff().array() < kCertain * dense.rowwise().maxCoeff().array()).any();
+  return (exact.rowwise().maxCoeff().array() < kSixDigits * dense.rowwise().maxCoeff().array())
+      .any();
 } catch (const Error& error) {
   if (!error.has(Code::singular)) throw;
   return true;
 }
-
-/// If entries have fewer digits, a mode's part may be rounding.
-constexpr double kUnclearDigits = 1e-3;
 
 /// Every port is judged by its own size, so one at rounding level would count as moved and seen. If
 /// digits are lost, only states that the other ports need are certain: part of the inputs and
@@ -86,7 +80,7 @@ void doubt_lost_digits(const SystemData& d, const StateSpace& dense, MinimizeOpt
   const char* lost = digits_lost(d);
   if (!lost && has_output_of_rounding(d, dense)) lost = "some output is rounding alone";
   if (!lost) return;
-  options.resolution = std::max(options.resolution, kCertain);
+  options.resolution = std::max(options.resolution, kSixDigits);
   int certain = 0;
   try {
     const StateSpace part = with_certain_ports(d, dense);
@@ -233,7 +227,8 @@ void minimize_checked(const SystemData& d, const Realization& written, Minimal& 
                                 .rounding = rounding};
   Minimized minimal = minreal::minimize_unmeasured(judged, options);
   doubt_lost_digits(d, judged, options, minimal.order, m.notes);
-  if (written.error.beside_largest.error > kUnclearDigits && !minimal.order.exact)
+  // If entries have fewer digits, a mode's part may be rounding.
+  if (written.error.beside_largest.error > linalg::kThreeDigits && !minimal.order.exact)
     minimal.order.highest = dense.order();
   if (!asked) count(exact_limits(minimal.order));
   std::optional<Change> by = lower_to(exact, d, dense, judged, minimal);

@@ -36,10 +36,9 @@ double difference_at(const ModelForm& form, std::complex<double> s, const Matrix
 
 /// Zero rows, and rows of fewer than three digits: `off` is a thousandth of `exact` or more.
 std::vector<Index> noisy_rows(const MatrixXd& exact, const MatrixXd& off) {
-  constexpr double kThreeDigits = 1e-3;
   std::vector<Index> rows;
   for (Index i = 0; i < exact.rows(); ++i)
-    if (off.row(i).maxCoeff() >= kThreeDigits * exact.row(i).maxCoeff()) rows.push_back(i);
+    if (off.row(i).maxCoeff() >= linalg::kThreeDigits * exact.row(i).maxCoeff()) rows.push_back(i);
   return rows;
 }
 

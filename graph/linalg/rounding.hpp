@@ -27,9 +27,18 @@ inline constexpr double kInSpan = 1e-7;
 /// of its size: nine typed digits, or the rounding of an elimination.
 inline constexpr double kMatrixDigits = 1e-9;
 
+/// Rounding of sums of sums of products (some thousand units), relative to their terms: a smaller
+/// sum is 0.
+inline constexpr double kSumsOfSums = 1e-12;
+
+/// The accuracy that is promised, six digits less than double has: larger errors of results are
+/// reported, smaller effects on them need not be kept.
+inline constexpr double kWarn = 1e-9;
 /// Numbers read from a text file have some six digits: a smaller relative difference, or share of
 /// the largest, is 0.
 inline constexpr double kTextDigits = 1e-6;
+/// An error, or a loss in a pivot, that leaves three digits: what is known less well is not used.
+inline constexpr double kThreeDigits = 1e-3;
 /// Times one sample of rounding, which may be small by chance: a smaller number may be rounding
 /// alone.
 inline constexpr double kNoise = 1e3;

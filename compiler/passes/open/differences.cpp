@@ -29,7 +29,7 @@ constexpr double kStep = 0x1p-8;
 double step_of(double value) { return value == 0 ? kStep : std::ldexp(kStep, std::ilogb(value)); }
 
 /// Largest error of a row of the derivative by the estimate of extrapolation, relative to the row.
-constexpr double kSmooth = 1e-9;
+using linalg::kWarn;
 
 /// A derivative of [A, B; C, D], or why it is not known.
 struct BlockDerivative {
@@ -46,7 +46,7 @@ BlockDerivative unknown(std::string why, std::string hint) {
 bool is_small(const MatrixXd& error, const MatrixXd& derivative, const MatrixXd& matrix,
               double step) {
   for (Index i = 0; i < error.rows(); ++i)
-    if (!(error.row(i).norm() <= kSmooth * derivative.row(i).norm() +
+    if (!(error.row(i).norm() <= kWarn * derivative.row(i).norm() +
                                      linalg::kProductRounding * matrix.row(i).norm() / step))
       return false;
   return true;
@@ -78,7 +78,7 @@ BlockDerivative by_differences(const Block& block, ParameterValues given, int pa
     return unknown(
         fmt::format("its matrices are not smooth in it: differences at steps of {:.3g}, {:.3g} and "
                     "{:.3g} do not agree to {:.0e}",
-                    step, step / 2, step / 4, kSmooth),
+                    step, step / 2, step / 4, kWarn),
         "write Block::opened for it, or use sweep");
   } catch (const Error& error) {
     const Mistake& m = error.mistakes().front();
