@@ -39,7 +39,7 @@ struct FlexibleBodyHandle : BodyHandle {
 };
 
 /// Fixes the whole line to the inertial frame: its point, and its shapes at 0. `ground(panel)`
-/// holds the point of a parent's line alone, and leaves its shapes free: `compile` warns of it.
+/// fixes the point of a parent's line alone, and its shapes remain free: `compile` warns of it.
 void ground(const LinePort& line, SourceLine at = std::source_location::current());
 
 /// Fixes the whole line, which must be its body's parent, to a rigid point: `mount` of the body
@@ -55,9 +55,9 @@ void weld(const LinePort& line, const DualPort<6>& site, const Rotation& T_ba = 
 /// is its body's parent (or b is), else `weld`, and equal motion and opposite forces of every
 /// shape. T_ba: components in frame a to those in frame b; numbers, no parameter. Panels in one
 /// plane share deflection and slope of the edge. Panels at an angle along it, as of a box, share
-/// its slope, and both hold it straight: the deflection of one is a motion of the other in its
-/// plane, in which a plate is rigid. Membranes share all displacements, at any angle; a membrane
-/// and a plate that is rigid in its plane meet at right angles or in one plane.
+/// its slope, and the edge stays straight: the deflection of one panel is a motion of the other in
+/// its plane, in which a plate is rigid. Membranes share all displacements, at any angle; a
+/// membrane and a plate that is rigid in its plane meet at right angles or in one plane.
 ///
 /// The meshes of the edges need not match if m is at most 4: the nodes' cubic functions then
 /// contain the polynomials, both edges move, or are measured, by the same ones, and the scene is

@@ -90,7 +90,7 @@ Diagram with_law(const StateSpace& structure) {
   return d;
 }
 
-/// L with the law as it runs on board, from the torques at one sample to those that it asks for.
+/// L with the law as it runs on board, from the torques at one sample to those that it commands.
 DiscreteModel sampled_loop(const StateSpace& structure) {
   StateSpace law = compile(telecom_attitude_law()).state_space();
   law.C *= -1, law.D *= -1;  // its output is the torque that the wheels exert

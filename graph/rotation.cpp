@@ -78,7 +78,7 @@ Rotation Rotation::of_steps(std::vector<Step> steps) {
 Rotation Rotation::matrix(const Matrix3d& T) {
   check_rotation(T);
   const Eigen::JacobiSVD<Matrix3d> svd(T, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  // An exact rotation (a permutation of axes, say) must stay exact.
+  // An exact rotation (such as a permutation of axes) must stay exact.
   const bool exact = (T.transpose() * T - Matrix3d::Identity()).isZero(0);
   return Rotation(NamedSteps{{exact ? T : Matrix3d(svd.matrixU() * svd.matrixV().transpose())}});
 }

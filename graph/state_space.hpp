@@ -45,9 +45,9 @@ void require_names(const StateSpace& model, const std::string& user);
 /// Column of the only entry in this row of A if it is 1 and off the diagonal, else -1: xdot of the
 /// state is another state.
 int unit_entry(const Eigen::MatrixXd& A, Eigen::Index row);
-/// Per state the position of its rate, -1 if it is no coordinate: by `rates`, as long as its row of
-/// A is that of a coordinate (after a change of states it may not be); if they are not known (a
-/// model by hand), by its row alone. O(n^2).
+/// Per state the index of its rate; -1 if it is no coordinate. The state's row of A must have one
+/// entry, a 1 at its rate (unit_entry); if the model has `rates`, they must name the same state. A
+/// model by hand has none. O(n^2).
 std::vector<int> rates_of(const StateSpace& model);
 
 /// The matrices with their names, for reading; wide models are truncated with a note.

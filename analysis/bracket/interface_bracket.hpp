@@ -22,8 +22,8 @@ struct BracketOptions {
   std::vector<double> omega = {};
 };
 
-/// What the lumping of interfaces costs: the scene in which every node has its own joint lies
-/// between two models of it.
+/// Bounds of the scene in which every node of an interface has its own joint, by two models with
+/// lumped interfaces; their width is the error of lumping.
 struct InterfaceBracket {
   struct Interval {
     double below = 0, above = 0;
@@ -38,7 +38,7 @@ struct InterfaceBracket {
 
 /// Compiles the scene with both lumpings, of the same meshes. A theorem [Courant and Hilbert,
 /// *Methods of Mathematical Physics* 1, VI]: constraints raise, and releases lower, each natural
-/// frequency of an undamped structure, in ascending order, and each static stiffness. It holds for
+/// frequency of an undamped structure, in ascending order, and each static stiffness. It applies to
 /// meshes with all their modes (a few modes with residual vectors change the bounds by their own
 /// error). Damping, also that of the bodies' modes, changes |s| in second order of its ratio: leave
 /// it out if the intervals are not wide beside that.
@@ -47,7 +47,7 @@ struct InterfaceBracket {
 /// outputs or numbers of motions without stiffness, or less than `modes` modes, for a pair that
 /// is not there, for real poles (filters, modes damped beyond critical), if all intervals have the
 /// width 0 (the scene does not use its argument), and if an interval would be negative: the theorem
-/// does not hold for this scene (bodies without most of their modes, laws in the loop, pairs of
+/// does not apply to this scene (bodies without most of their modes, laws in the loop, pairs of
 /// different points); singular if a compliance is that of a free structure. Cost of the poles:
 /// O(n^3) for n states, twice.
 ///

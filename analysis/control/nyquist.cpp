@@ -55,7 +55,7 @@ class Winding {
   }
 
   const LoopResponse& response_;
-  mutable int splits_ = 0;  ///< that are left
+  mutable int splits_ = 0;  ///< that remain
 };
 
 /// The poles of L on the axis, upper half, each location once.

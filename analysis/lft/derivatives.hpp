@@ -49,7 +49,7 @@ class Derivatives {
   /// row or to 1e-11 of the matrices' row over p (compiler/passes/open/differences.hpp).
   const std::vector<std::string>& by_differences() const { return by_differences_; }
   /// The system with w and z among its inputs and outputs, from which all derivatives follow: its
-  /// certificate() holds for them, with the list of by_differences().
+  /// certificate() applies to them, with the list of by_differences().
   System opened() const { return System(opened_); }
 
   /// dH/dp at s, outputs x inputs [unit of H per unit of p]: the product of M_yw and M_zu, each

@@ -9,7 +9,7 @@ namespace titop {
 struct Derivatives::Paths {
   std::vector<Eigen::Index> first;  ///< of the pairs of each parameter
   Eigen::MatrixXcd yw, zu;
-  Eigen::MatrixXcd zw, yu;  ///< if they are asked for
+  Eigen::MatrixXcd zw, yu;  ///< if requested
   TransferCost cost;
 };
 

@@ -31,7 +31,7 @@ struct ModeShape {
 struct ModeShapes {
   std::vector<StructurePoint> points;
   std::vector<std::pair<int, int>> lines;  ///< from a body's parent point to each of its children
-  std::vector<ModeShape> modes;            ///< of the poles asked for that have a shape
+  std::vector<ModeShape> modes;            ///< of the requested poles that have a shape
   std::vector<std::string> without;        ///< the others, with the reason
   std::vector<std::string> notes;          ///< blocks without positions, unknown distances
 };
@@ -41,7 +41,7 @@ struct ModeShapes {
 /// Points are the ports of six degrees of freedom of blocks with Block::kinematics, and ports of
 /// one axis that are mounted on such a point (`mount(z, hub.child("C").along(r))`). Their places
 /// follow from the ports of each body and from the equations between accelerations: joined points
-/// coincide, turned as the equations say; the travel of a slide is not known and counts as 0.
+/// coincide, turned as in the equations; the travel of a slide is not known and counts as 0.
 /// Assemblies that are connected through the ground alone all begin at the origin; a note tells it.
 ///
 /// A shape is the motion that the inputs of the diagram excite: the residue of the transfer from

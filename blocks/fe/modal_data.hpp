@@ -29,7 +29,7 @@ std::string to_string(const LineShape& shape);
 /// An edge as an interface (`fe::shapes`, `fe::moments`): its motion beyond the rigid one of the
 /// child or parent of this name, which is at its middle. Every shape is a scalar channel of the
 /// body, "C.z2": the acceleration of its coordinate and the force that belongs to it. Shapes that
-/// no equation drives are free, also those of the parent: `ground(panel)` holds its middle alone,
+/// no equation drives are free, also those of the parent: `ground(panel)` fixes its middle alone,
 /// `ground(panel.line("root"))` the whole line.
 struct ModalLine {
   std::string name;               ///< of the child, or of the parent's interface in the mesh

@@ -28,15 +28,15 @@ double size_of(const Mesh& mesh) {
   return (high - low).norm();
 }
 
-/// Points with displacements or rotations for which the condition holds.
+/// Points with displacements or rotations that satisfy the condition.
 std::vector<std::size_t> points_where(const Mesh& mesh,
-                                      const std::function<bool(const Vector3d&)>& holds) {
+                                      const std::function<bool(const Vector3d&)>& condition) {
   std::vector<bool> moves(mesh.points.size());
   for (const Dof& dof : mesh.dofs)
     if (dof.component < kGeneralised) moves[dof.point] = true;
   std::vector<std::size_t> result;
   for (std::size_t i = 0; i < mesh.points.size(); ++i)
-    if (moves[i] && holds(mesh.points[i].position)) result.push_back(i);
+    if (moves[i] && condition(mesh.points[i].position)) result.push_back(i);
   return result;
 }
 

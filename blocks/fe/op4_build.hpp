@@ -24,7 +24,7 @@ struct Op4Header {
   bool bigmat = false;  ///< rows was negative, or 65536 and more
 };
 
-/// The matrices asked for by name, and those read so far.
+/// The matrices requested by name, and those read so far.
 struct Op4Taken {
   std::set<std::string> only;  ///< names in capitals; empty: all
   long long entries = 0;

@@ -15,7 +15,8 @@ using solve::RowMatrix;
 
 namespace {
 
-/// A state whose own rate is not the one that follows from the others: most of it, if there is one.
+/// Name of a dependent state whose rate differs from the one by the independent states' rates by
+/// more than half of its terms; empty if there is none.
 std::string prevented(const Factored& d, const RowMatrix<double>& xdot,
                       const RowMatrix<double>& terms) {
   constexpr double kMost = 0.5;

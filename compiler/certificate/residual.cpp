@@ -181,8 +181,9 @@ struct Residual {
     const auto k = kind(signal, entry);
     return k ? largest[*k] : 0;
   }
-  /// Redundantly closed chains mix all motions and wrenches that they constrain: one that is 0
-  /// there is rounding of the others, and so may be all terms of its equation.
+  /// In over-constrained chains a motion or wrench that is exactly 0 is computed as rounding of the
+  /// largest one of its kind, and so may be all terms of its equation: a residual at that level
+  /// does not count.
   void find_largest() {
     if (d.skeleton->stage.released.empty()) return;
     for (int signal = 0; signal < static_cast<int>(w.signals.size()); ++signal)

@@ -231,7 +231,8 @@ std::string words_of(const ApplyDifference& found, double s) {
       found.worst, s, why);
 }
 
-/// At one real s: equations that hold for every real s hold for every s, at half the arithmetic.
+/// At one real s: equations satisfied at every real s are satisfied at every s. Half the
+/// arithmetic.
 void check_at_s(const Factored& d, const RowMatrix<double>& u, double s, Check& check) {
   Evaluation<double> point(d, s, u);
   Signals signals{first_of_signals(d.graph())};

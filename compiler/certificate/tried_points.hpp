@@ -21,10 +21,12 @@ struct Tried {
   double slowest = 0;
 };
 
-/// Far below, at and above the blocks' frequencies, and at the assembly's; below the slowest of the
-/// blocks', and at and below the slowest mode that shows, if those are lower still. That is
-/// looked for below all blocks: two that are far apart have decades without a mode between them.
-/// u: inputs x columns; `units`: as by_unit. O(bodies) per decade.
+/// Points: 1e-4, 1e-2, 1 and 100 times pick_s; the assembly's frequencies, where no point is near;
+/// 1e-2 of the slowest block's frequency, if that is below 1e-2 |pick_s|; the slowest mode with an
+/// effect on the outputs, if it is below |pick_s| / 2, and 1e-2 of it, if it is below 2e-2
+/// |pick_s|. This mode is searched from the slowest block downwards: between two frequencies that
+/// are far apart are decades without a mode. u: inputs x columns; `units`: as by_unit. O(bodies)
+/// per decade.
 Tried tried(const Factored& data, const Eigen::MatrixXd& A,
             const solve::RowMatrix<std::complex<double>>& u, const std::vector<int>& units);
 

@@ -47,9 +47,9 @@ std::vector<Eigen::MatrixXcd> refined_transfers(const StateSpace& m,
 /// outputs. O(points n^3).
 Eigen::MatrixXd terms(const StateSpace& m, const std::vector<std::complex<double>>& points);
 
-/// Those of these terms whose rounding is below 1e-6 of the entries in the row and column of
-/// `exact` (their geometric mean), and all terms if these are 0; else 0. An entry with more
-/// rounding is not a 0 compared with others: such a model has lost digits everywhere.
+/// These terms where an entry may be a 0: their rounding is below 1e-6 of the geometric mean of the
+/// largest entries in row and column of `exact`, or that is 0. Elsewhere 0: with more rounding the
+/// model has lost digits everywhere, and an entry is no 0 compared with others.
 Eigen::MatrixXd of_nothing(const Eigen::MatrixXd& terms,
                            const std::vector<Eigen::MatrixXcd>& exact);
 

@@ -24,9 +24,11 @@ class Followers {
  public:
   Followers(const Skeleton& k, const Factored& d);
 
-  /// Makes as many states as there are constraints depend on the others: rates first (a massless
-  /// point has no velocity of its own), then the stiffest; those that did in Stage::before if
-  /// that keeps the digits. Returns the constraints that determine none, written in independent
+  /// Each constraint makes one state depend on the others: a rate if it contains any (a massless
+  /// point has no velocity of its own), else a coordinate that stores energy, else another one; of
+  /// these the one with the largest factor in units of energy (a coordinate by 1 /
+  /// sqrt(stiffness)). A state that was dependent in Stage::before is preferred if its factor is at
+  /// least 1e-3 of that. Returns the constraints that determine none, written in independent
   /// states: g = 0.
   std::vector<Hidden> add(std::vector<Hidden> constraints);
 

@@ -77,14 +77,15 @@ struct Independent {
 };
 
 /// Householder elimination with column pivoting, block by block: columns of one block only are
-/// eliminated there, the remaining blocks merge two by two, the smallest first. In each block
-/// unknowns come first, then `preferred` columns (rows wait for one that other blocks have too) and
-/// integrals while their pivots are above 1e-3 (in the last block, of the best there), then all
-/// coordinates; until the last block only by pivots that are as good as others'. Whether there is a
-/// pivot is decided on the equilibrated relations, which one is taken in units of energy (eta by
-/// 1/omega): soft modes become dependent, independent of their neighbours. Ties go to the first
-/// column. O(columns) if every chain has a body of its own, about columns^1.5 for planar grids of
-/// chains; O(rows^2 columns) of blocks that merge without eliminating any column.
+/// eliminated there, the remaining blocks merge two by two, the smallest first. Order in a block:
+/// unknowns; `preferred` columns, then integrals, with pivots above 1e-3 (in the last block, of the
+/// largest); all coordinates. Before the last block the pivot of a coordinate must be worth a tenth
+/// of the best in the block; if other blocks have a preferred column too, rows are kept for it
+/// until these have merged. Whether there is a pivot is decided on the equilibrated relations; the
+/// choice is made in units of energy (eta by 1/omega): soft modes become dependent, independent of
+/// their neighbours. Ties go to the first column. O(columns) if every chain has a body of its own,
+/// about columns^1.5 for planar grids of chains; O(rows^2 columns) of blocks that merge without
+/// eliminating any column.
 Independent independent(Relations relations, const std::vector<int>& preferred = {});
 
 }  // namespace titop::loops

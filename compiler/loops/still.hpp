@@ -11,9 +11,10 @@ namespace titop::loops {
 using AtRest = std::set<ScalarColumn>;
 
 /// Sets the motion of points that closed chains immobilise by their numbers to 0: the elimination
-/// would find rounding instead of their accelerations. The chains' own equations keep them, for the
-/// forces, and so do bodies that `lower` has turned into equations; all other equations lose their
-/// terms, so that outputs are 0 and bodies mounted there are on the ground.
+/// would find rounding instead of their accelerations. Closing equations, equations that place a
+/// point, and bodies that `lower` has turned into equations keep their terms, which determine
+/// forces. In all other equations and in outputs these motions are 0: bodies mounted there are on
+/// the ground.
 void hold_still(Stage& stage, const Motion& motion, const std::vector<Closing>& closings,
                 const AtRest& held);
 

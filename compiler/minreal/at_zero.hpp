@@ -32,8 +32,10 @@ RemovedStates take_out_by_pattern(detail::Sampled& sampled, Eigen::MatrixXd& ene
 /// their meaning except as noted. `energy` (see MinimizeOptions; or empty) follows. Without inputs,
 /// or without outputs, that side removes nothing.
 ///
-/// Of several states that could leave, that leaves which moves most (is seen most) at one s, so
-/// that its sum over the others cancels least. O(n^3) for each repetition.
+/// Of several states that could be removed, integrators are removed first, from the end of their
+/// chains, then those with the smallest rows (columns) in units of
+/// linalg::similarity_scaling_of_parts: a removed state is a sum of the others with small
+/// coefficients. O(n^3) for each repetition.
 RemovedStates take_out_at_zero(detail::Sampled& sampled, Eigen::MatrixXd& energy);
 
 /// True if A of these states alone has a pole at 0: a row depends on the others, by the same

@@ -21,10 +21,9 @@ Matrix unit_columns(Matrix m) {
   return m;
 }
 
-/// Rotates k modes of one frequency: modes that no input excites become the last ones, and of the
-/// others those that no output observes follow the observed ones. b: k x inputs, c: k x outputs,
-/// each column of weight one. Returns the k x k unitary matrix whose columns are the new modes.
-/// O(k^2 ports).
+/// Rotates k modes of one frequency. Order of the new modes: excited and observed, excited alone,
+/// not excited. b: k x inputs, c: k x outputs, each column of weight one. Returns the k x k unitary
+/// matrix whose columns are the new modes. O(k^2 ports).
 Eigen::MatrixXd turn(const Eigen::MatrixXd& b, const Eigen::MatrixXd& c);
 Eigen::MatrixXcd turn(const Eigen::MatrixXcd& b, const Eigen::MatrixXcd& c);
 

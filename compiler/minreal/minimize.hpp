@@ -100,7 +100,7 @@ struct Minimized {
 ///    effect, and those whose bound is above 1.4e-14, which may hide an effect;
 ///  - downwards, kept modes below 1e-9 within 1e4 of their bound, and any within ten times their
 ///    bound; integrators and states of such small models within 1e4 of their rounding.
-/// A decided order holds up to rounding of the data: effects below their own rounding bound (two
+/// A decided order is right up to rounding of the data: effects below their own rounding bound (two
 /// frequencies one ulp apart) count as zero, and only exact arithmetic decides about them. Modes
 /// are vectors of one size in the states' own units (linalg::similarity_scaling_of_parts): in other
 /// units of the model the verdict is the same except for decisions at rounding level, which count

@@ -21,8 +21,8 @@ std::string names_of(const StateSpace& model, const std::vector<int>& states);
 std::string note_of_dependent(const StateSpace& model, const std::vector<int>& out);
 std::string note_of_unseen(const StateSpace& model, const std::vector<int>& out);
 
-/// Takes out the modes that the verdicts drop; one note for states that now follow from the others,
-/// one for those that the others are taken relative to. O(n^2) per mode.
+/// Removes the modes of which Verdict::drop is true. Adds a note that lists the states that are now
+/// sums of others, and one that lists those to which others are now relative. O(n^2) per mode.
 void take_out(const Symmetric& s, const std::vector<Verdict>& verdicts, StateSpace& model,
               std::vector<std::string>& notes);
 void take_out(const General& g, const std::vector<Verdict>& verdicts, StateSpace& model,

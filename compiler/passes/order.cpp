@@ -67,7 +67,7 @@ using Digraph = boost::compressed_sparse_row_graph<boost::directedS, boost::no_p
 using Vertex = boost::graph_traits<Digraph>::vertex_descriptor;
 
 /// Strong component of every unknown signal; components come out dependencies first. An input that
-/// moves (an output that sees) one of its signals does so with all of them.
+/// reaches one signal of a component reaches all of them; likewise for outputs.
 struct StrongComponents {
   std::vector<int> of;
   std::vector<std::size_t> size;  ///< in signals

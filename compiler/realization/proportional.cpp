@@ -9,7 +9,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Any vectors will do for modes of one frequency: those in which damping does not couple them.
+/// Eigenvectors of one frequency may be rotated: takes those that diagonalise the damping, if it is
+/// symmetric.
 void turn_by_damping(const MatrixXd& Z, GradedModes& e) {
   for (const auto& [first, count] : equal_frequencies(e, linalg::kSameFrequency)) {
     if (count == 1) continue;

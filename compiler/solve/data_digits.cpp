@@ -188,8 +188,8 @@ class DigitJudge {
     return result;
   }
 
-  /// Ports at which random errors of all numbers together have so large an effect that one of them
-  /// alone may have too large a one.
+  /// Ports to judge block by block: random errors of all data together change their input by a
+  /// tenth of limit_of_doubt or more.
   std::vector<int> by_sums() const {
     std::vector<int> all(ports_.size()), result;
     RowMatrix<double> rhs = RowMatrix<double>::Zero(k_.joint.plan->unknowns, kSums);

@@ -70,11 +70,12 @@ struct Factored {
   const Graph& graph() const { return skeleton->stage.graph; }
   const Layout& layout() const { return skeleton->layout; }
   const std::vector<std::string>& state_names() const { return states.names(layout().states); }
-  /// Blocks of the transfer, units of outputs x units of inputs, that are 0 by symmetry: in 32
-  /// digits (or 50, if these have none) they are at rounding level, or smaller than in double by as
-  /// much as rounding is, or the last place of the data in double changes them altogether, as a 0
-  /// after rotations of frames. Found once, at pick_s,
-  /// when rounding in double is first in doubt: the cost of some ten evaluations in double.
+  /// Blocks of the transfer, units of outputs x units of inputs, that are 0 by structure, by
+  /// symmetry or by rotations of frames. In 32 digits (in 50, if 32 have no digit of any block) a
+  /// block that is 0 is below the largest of four limits: 1e3 times its rounding; 2^-40 of its
+  /// value in double; its change if all terms change by four units of the last place of double; 1e3
+  /// times the rounding of the blocks in its row and column. Found once, at pick_s, when rounding
+  /// in double is first in doubt: the cost of some ten evaluations in double.
   const Eigen::MatrixX<bool>& zero_blocks() const;
   /// Sets the outputs to 0 whose zero_blocks() are 0 for all inputs. outputs x columns.
   void clear_zero_outputs(solve::RowMatrix<double>& outputs) const;

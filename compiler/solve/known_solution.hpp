@@ -19,7 +19,7 @@ using linalg::kThreeDigits;
 /// with L and one solution: O(bodies).
 Eigen::ArrayXd errors_of_known_solution(const Factored& data);
 
-/// The errors that are left after refinement of that solution, with residuals in 50 digits, until
+/// The errors that remain after refinement of that solution, with residuals in 50 digits, until
 /// all are below kThreeDigits. Each step multiplies the error by I - F^-1 L: it does not change the
 /// error along v, and removes the errors of unknowns whose scale is far off. Up to ten such steps.
 Eigen::ArrayXd errors_left_of_known_solution(const Factored& data);

@@ -29,7 +29,7 @@ void refine(InstantIn<Twofold>& now, const RowMatrix<double>& more) {
         now.data.factors->solve(in_double(now.rows.residual(rhs, now.unknowns)).real());
     now.unknowns += solve::lifted<Twofold>(change);
     const double size = change.cwiseAbs().maxCoeff();
-    if (!(2 * size <= before)) break;  // no digit is left, or nothing
+    if (!(2 * size <= before)) break;  // no digit remains, or no error
     before = size;
   }
 }

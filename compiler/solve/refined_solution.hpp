@@ -44,14 +44,13 @@ class RefinedSolution {
   /// improve(), and the error by rounding. One solution of two columns per column.
   Losses losses();
   /// Whether the unknowns as they are, after the last step, solve the equations to the rounding of
-  /// T: the exact solution of equations whose coefficients differ by that from these. Each equation
-  /// must hold to the rounding of its terms (solve/backward_error.hpp), or, if these are below 1000
-  /// n units of rounding of those that it would have with its coefficients and the largest of the n
-  /// unknowns, to the rounding of those: between unknowns that are 0 up to rounding, as at a pinned
-  /// point, terms are rounding themselves [M. Arioli, J. W. Demmel, I. S. Duff, Solving sparse
-  /// linear systems with sparse backward error, 1989]. Unknowns are compared in the sizes that
-  /// equilibrate the equations. Cost: the rows once per column, and once more if an equation does
-  /// not hold to the rounding of its own terms; no solution.
+  /// T: the exact solution of equations whose coefficients differ by that from these. The residual
+  /// of each row must be at most the rounding (solve/backward_error.hpp) of its terms |b| + |A|
+  /// |x|. If these are below 1000 n eps of |A| max|x|, with n unknowns in the sizes that
+  /// equilibrate the equations, |A| max|x| is added to them: between unknowns that are 0 up to
+  /// rounding, as at a pinned point, terms are rounding themselves [M. Arioli, J. W. Demmel, I. S.
+  /// Duff, Solving sparse linear systems with sparse backward error, 1989]. Cost: the rows once per
+  /// column, and once more if a residual is above the rounding of the row's own terms; no solution.
   bool holds() const;
 
  protected:

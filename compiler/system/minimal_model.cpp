@@ -95,8 +95,9 @@ void doubt_lost_digits(const SystemData& d, const StateSpace& dense, MinimizeOpt
        fmt::format("{}: of {} states, only {} are certainly needed", lost, v.order, certain)});
 }
 
-/// Error of the transfer without the removed modes, at each of the points by itself: relative to
-/// its rigid motion at low frequency, the error of a free structure near its modes would be hidden.
+/// Error of the transfer without the removed modes, relative to the transfer at the same s.
+/// Relative to its maximum over all s, the rigid motion of a free structure at low frequency would
+/// hide errors near its modes.
 struct Change {
   double by_modes = 0;  ///< relative to the terms of both models: no rounding is as large
   double in_all = 0;    ///< relative to itself, or for a 0 to the terms of the model as written

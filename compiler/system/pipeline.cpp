@@ -85,7 +85,7 @@ constexpr Pass kPasses[] = {
      steps::has_data},
     {{"certify", "the checks that were made, and how well the equations are satisfied"},
      steps::certify},
-    // When the dense model is asked for.
+    // When the dense model is requested.
     {{"dense", "A, B, C, D are written from the factors; the digits lost in them are known",
       "state_space() is called"},
      steps::dense},

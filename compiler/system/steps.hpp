@@ -39,9 +39,9 @@ Compiled solve(Compiled c);
 Compiled pivots(Compiled c);
 
 /// The factors are regular: hidden constraints and their derivatives are found and eliminated, with
-/// the threshold of `pivots` (compiler/index_reduction/reduce.hpp). If it is a pivot of rounding
-/// that calls for it, data and internal forces are judged before, too. Throws improper, ill_posed,
-/// kinematic_loop, structure, not_finite.
+/// the threshold of `pivots` (compiler/index_reduction/reduce.hpp). If the equations are singular
+/// by a pivot that is rounding, internal forces and data are judged first: their errors name the
+/// cause. Throws improper, ill_posed, kinematic_loop, structure, not_finite.
 Compiled reduce(Compiled c);
 bool has_no_pivot(const Compiled& c);
 
@@ -56,7 +56,7 @@ Compiled digits(Compiled c);
 bool has_data(const Compiled& c);
 
 /// The certificate: a function of all the others. No pass before it depends on it; `minimize`
-/// asks it whether digits are lost.
+/// reads from it whether digits are lost.
 Compiled certify(Compiled c);
 
 /// A, B, C, D are written from the factors and compared with them. O(n^2); see

@@ -23,7 +23,7 @@ namespace titop::detail {
 
 struct SystemData;
 
-/// Inputs whose columns and outputs whose rows are asked for: indices in the graph.
+/// Inputs whose columns and outputs whose rows are requested: indices in the graph.
 struct PartOfTransfer {
   std::vector<int> inputs, outputs;
 };

@@ -22,8 +22,8 @@ class ZeroPairs {
   /// These sizes of pairs, with 0 for those that are 0.
   Eigen::MatrixXd cleared(const Eigen::MatrixXd& sizes) const;
 
-  /// These sizes of pairs; those of an output, or of an input, whose pairs all are 0 are raised to
-  /// the largest ones of the others of its port that share its unit.
+  /// These sizes of pairs. A row (column) whose pairs all are 0 gets, in each column (row), at
+  /// least the largest size among the other rows (columns) of its port and unit.
   Eigen::MatrixXd of_ports(Eigen::MatrixXd sizes) const;
 
  private:

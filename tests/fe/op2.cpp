@@ -29,7 +29,7 @@ fe::Op2File read(const std::string& bytes) {
   return fe::read_op2(folder.path / "m.op2");
 }
 
-/// What a run may do otherwise.
+/// Options of a run, and faults of its file.
 struct Run {
   double mass = 1;                                         ///< generalised
   std::vector<double> forces = {100, 0, -200, 0, -50, 0};  ///< of the support at grid 7

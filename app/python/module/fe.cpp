@@ -154,7 +154,7 @@ void bind_modes(py::module_& m) {
            "xi"_a = std::vector<double>(), "rayleigh"_a = py::none(), "rigid"_a = py::none());
 }
 
-/// Without names asked for, those that are unread or repeat with other values are left out.
+/// Without requested names, those that are unread or repeat with other values are left out.
 std::map<std::string, Eigen::MatrixXd> by_name(const std::vector<fe::Op4Matrix>& all,
                                                const std::vector<std::string>& only) {
   std::map<std::string, Eigen::MatrixXd> result;

@@ -21,7 +21,7 @@ void bind_mode_shapes(py::module_& m) {
                     "List of StructurePoint: the columns of the motions.")
       .def_readonly("lines", &ModeShapes::lines,
                     "Pairs of points: from a body's parent point to each of its children.")
-      .def_readonly("modes", &ModeShapes::modes, "Of the poles asked for that have a shape.")
+      .def_readonly("modes", &ModeShapes::modes, "Of the requested poles that have a shape.")
       .def_readonly("without", &ModeShapes::without, "The others, with the reason.")
       .def_readonly("notes", &ModeShapes::notes,
                     "Blocks without positions and unknown distances, in words.");
@@ -40,7 +40,7 @@ void bind_bracket(py::module_& m) {
       .def_readonly("above", &Interval::above, "Upper end [unit of the quantity].")
       .def_property_readonly("width", &Interval::width, "above - below.");
   py::class_<InterfaceBracket>(m, "InterfaceBracket",
-                               "What the lumping of interfaces costs; printed as a table.")
+                               "Bounds over the lumping of interfaces; printed as a table.")
       .def_readonly("omega", &InterfaceBracket::omega, "Intervals, ascending [rad/s].")
       .def_readonly("compliance", &InterfaceBracket::compliance, "[m/N, rad/(N m)]")
       .def_readonly("transfer_difference", &InterfaceBracket::transfer_difference,

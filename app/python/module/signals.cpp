@@ -74,7 +74,7 @@ std::string text_of(const AnySignal& signal) {
 
 void bind_any(py::module_& m) {
   py::class_<AnySignal> type(m, "Signal",
-                             "What may stand on the right of an equation: ports, readings, inputs "
+                             "The right-hand side of an equation: ports, readings, inputs "
                              "and sums of them. +, - and products with a number, a parameter, a "
                              "Rotation (T * x) or a matrix (M @ x) make new ones; nothing is "
                              "checked before compile.");

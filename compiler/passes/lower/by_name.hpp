@@ -11,8 +11,8 @@ namespace titop::passes {
 /// same, since all later passes traverse it in turn.
 Graph by_name(const Graph& graph);
 
-/// The same; what the stage has of the graph's nodes and signals, from a compiled system whose
-/// graph has been rewritten (Stage::motions, Stage::before), follows.
+/// The same for the graph of a stage: indices of nodes and signals in Stage::motions and
+/// Stage::before, from a compiled system whose graph has been rewritten, are renumbered.
 Graph by_name(const Graph& graph, Stage& stage);
 
 }  // namespace titop::passes

@@ -22,7 +22,7 @@ std::optional<Opened> opened_to_first_order(const Block& block, ParameterValues 
 std::optional<Mistake> why_no_differences(const Block& block, ParameterValues values,
                                           int parameter);
 
-/// The parameter moves points of the block's kinematics, and its pairs do not say so
+/// The parameter moves points of the block's kinematics, and its pairs do not declare it
 /// (Opened::motions): positions that are read beyond them would be wrong.
 bool moves_points_unsaid(const Block& block, ParameterValues values, int parameter);
 
