@@ -29,8 +29,8 @@ std::vector<int> inverse(const std::vector<int>& order) {
 
 }  // namespace
 
-std::vector<std::string> pick(const std::vector<std::string>& names,
-                              const std::vector<int>& places) {
+std::vector<std::string> names_at(const std::vector<std::string>& names,
+                                  const std::vector<int>& places) {
   std::vector<std::string> result;
   if (!names.empty())
     for (const int i : places) result.push_back(names[at(i)]);
@@ -48,15 +48,21 @@ std::optional<NameOrder> name_order(const StateSpace& m) {
 
 StateSpace by_name(const StateSpace& m, const NameOrder& order) {
   const auto& [x, u, y] = order;
-  return {m.A(x, x),         m.B(x, u),         m.C(y, x),          m.D(y, u),
-          pick(m.states, x), pick(m.inputs, u), pick(m.outputs, y), pick(m.rates, x)};
+  return {m.A(x, x),
+          m.B(x, u),
+          m.C(y, x),
+          m.D(y, u),
+          names_at(m.states, x),
+          names_at(m.inputs, u),
+          names_at(m.outputs, y),
+          names_at(m.rates, x)};
 }
 
 StateSpace states_by_name(const StateSpace& m) {
   std::vector<int> x;
   if (!order_of(m.states, m.A.rows(), x)) return m;
-  return {m.A(x, x),         m.B(x, Eigen::all), m.C(Eigen::all, x), m.D,
-          pick(m.states, x), m.inputs,           m.outputs,          pick(m.rates, x)};
+  return {m.A(x, x), m.B(x, Eigen::all), m.C(Eigen::all, x),  m.D, names_at(m.states, x),
+          m.inputs,  m.outputs,          names_at(m.rates, x)};
 }
 
 StateSpace as_before(const StateSpace& m, const std::vector<std::string>& states,

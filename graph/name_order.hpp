@@ -13,8 +13,8 @@ struct NameOrder {
 };
 
 /// The names at these places, if there are any.
-std::vector<std::string> pick(const std::vector<std::string>& names,
-                              const std::vector<int>& places);
+std::vector<std::string> names_at(const std::vector<std::string>& names,
+                                  const std::vector<int>& places);
 
 /// None if the names of rows or of columns are not unique. O(n log n).
 std::optional<NameOrder> name_order(const StateSpace& model);

@@ -60,7 +60,7 @@ StateSpace part(const StateSpace& m, const std::vector<Index>& in, const std::ve
 }
 
 /// M as one block.
-Diagram one_block(const StateSpace& m) {
+Diagram diagram_of_matrix(const StateSpace& m) {
   Diagram d{"M of the LFT"};
   auto block = d.add("M", Lti{.A = m.A, .B = m.B, .C = m.C, .D = m.D});
   block.in = d.input("in", static_cast<int>(m.B.cols()));
@@ -78,7 +78,7 @@ bool has_pole_at_0(const StateSpace& m) {
 ReducedSystem reduced_block(const StateSpace& m, const Scene& scene, const Options& options) {
   detail::check(scene);
   try {
-    return compile(one_block(m), scene, options);
+    return compile(diagram_of_matrix(m), scene, options);
   } catch (const Error& error) {
     if (scene.band_hz[0] > 0 || !has_pole_at_0(m)) throw;
     throw Error(Code::singular,

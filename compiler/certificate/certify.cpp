@@ -70,15 +70,22 @@ Check certify(const Factored& d) {
   c.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   // At distance delta from singular the margin is about 4/delta, and a pivot keeps delta/2.
   const double by_margin = 4 / c.margin, by_pivot = 2 * c.weakest_pivot;
+  const char* const data = "look for mixed units, tiny masses and long levers";
   if (by_margin < kFewDigits)
-    check.warn(fmt::format("the loop at {} has margin {:.2g}: {} left", c.margin_where, c.margin,
-                           digits_at(by_margin)));
+    check.warn(fmt::format("the loop at {} has margin {:.2g}: {} left; {}", c.margin_where,
+                           c.margin, digits_at(by_margin), data));
   else if (by_pivot < kFewDigits)
-    check.warn(fmt::format("the pivot at {} is {:.1e} of its terms: {} left", c.weakest_where,
-                           c.weakest_pivot, digits_at(by_pivot)));
+    check.warn(fmt::format("the pivot at {} is {:.1e} of its terms: {} left; {}", c.weakest_where,
+                           c.weakest_pivot, digits_at(by_pivot), data));
   if (c.residual > kWarn)
-    check.warn(fmt::format("{} is satisfied only to {:.1g}", c.residual_where, c.residual));
-  if (weak.least > 0) check.warn("no digit remains: in double a pivot is rounding alone");
+    check.warn(
+        fmt::format("{} is satisfied only to {:.1g}: compare outputs with those of "
+                    "transfer(s, Precision::digits50)",
+                    c.residual_where, c.residual));
+  if (weak.least > 0)
+    check.warn(
+        "no digit remains: in double a pivot is rounding alone; check the data (transfer uses "
+        "finer arithmetic)");
   return check;
 }
 

@@ -7,7 +7,8 @@ namespace {
 
 using linalg::at;
 
-void put(std::map<int, Eigen::MatrixXd>& to, int key, const Eigen::MatrixXd& matrix) {
+/// Adds the coefficient of `key`.
+void add_coefficient(std::map<int, Eigen::MatrixXd>& to, int key, const Eigen::MatrixXd& matrix) {
   const auto [place, added] = to.try_emplace(key, matrix);
   if (!added) place->second += matrix;
 }
@@ -29,7 +30,7 @@ void SumExpander::add(ExpandedSum& to, const Eigen::MatrixXd& factor, int signal
   if (factor.isZero(0)) return;
   const Signal& s = g_.signals[at(signal)];
   if (s.channel >= 0 && s.quantity == Quantity::acceleration)
-    return put(to.points, s.channel, factor);
+    return add_coefficient(to.points, s.channel, factor);
   const bool lowered = s.node >= 0 && g_.nodes[at(s.node)].lowered;
   if (const int e = equation_of_[at(signal)];
       lowered && e >= 0 && std::find(way.begin(), way.end(), signal) == way.end()) {
@@ -40,13 +41,13 @@ void SumExpander::add(ExpandedSum& to, const Eigen::MatrixXd& factor, int signal
     return;
   }
   if (s.role == Signal::Role::state)
-    put(to.states, signal, factor);
+    add_coefficient(to.states, signal, factor);
   else if (s.role == Signal::Role::output && is_integrator(s.node))
-    put(to.integrals, signal, factor);
+    add_coefficient(to.integrals, signal, factor);
   else if (s.role == Signal::Role::output && s.quantity == Quantity::velocity)
-    put(to.rates, signal, factor);
+    add_coefficient(to.rates, signal, factor);
   else
-    put(to.others, signal, factor);
+    add_coefficient(to.others, signal, factor);
 }
 
 ExpandedSum SumExpander::of(const std::vector<Term>& terms) const {

@@ -107,7 +107,7 @@ bool take_out_once(detail::Sampled& s, RowsOfModel rows_of_model, bool by_inputs
 /// These states alone, without inputs and outputs.
 StateSpace without_ports(const StateSpace& m, const std::vector<int>& states) {
   const MatrixXd none(std::ssize(states), 0);
-  return {m.A(states, states), none, none.transpose(), {}, pick(m.states, states), {}, {}};
+  return {m.A(states, states), none, none.transpose(), {}, names_at(m.states, states), {}, {}};
 }
 
 /// States that inputs reach through A, step by step.

@@ -51,8 +51,8 @@ StateSpace without_integrators(const StateSpace& model, const IntegratorSplit& s
   StateSpace rest;
   rest.A = model.A(states.rest, states.rest);
   rest.B = model.B(states.rest, Eigen::all);
-  rest.states = pick(model.states, states.rest);
-  rest.rates = pick(model.rates, states.rest);
+  rest.states = names_at(model.states, states.rest);
+  rest.rates = names_at(model.rates, states.rest);
   rest.inputs = model.inputs;
   rest.outputs = model.outputs;
   MatrixXd C = model.C(Eigen::all, states.rest), D = model.D;
@@ -79,8 +79,8 @@ StateSpace with_integrators(const StateSpace& rest, const StateSpace& model,
   m.C.resize(outputs, n + k);
   m.C << rest.C.topRows(outputs), model.C(Eigen::all, states.integrators);
   m.D = rest.D.topRows(outputs);
-  m.states = above(rest.states, pick(model.states, states.integrators));
-  m.rates = above(rest.rates, pick(model.rates, states.integrators));
+  m.states = above(rest.states, names_at(model.states, states.integrators));
+  m.rates = above(rest.rates, names_at(model.rates, states.integrators));
   m.inputs = model.inputs;
   m.outputs = model.outputs;
   return m;

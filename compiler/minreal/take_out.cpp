@@ -41,8 +41,8 @@ MatrixXd solve_for(const MatrixXd& W, const std::vector<int>& out, const std::ve
 }
 
 void keep_names(StateSpace& m, const std::vector<int>& keep) {
-  m.states = pick(m.states, keep);
-  m.rates = pick(m.rates, keep);
+  m.states = names_at(m.states, keep);
+  m.rates = names_at(m.rates, keep);
 }
 
 /// Modes that leave a model by one of their sides.

@@ -87,7 +87,7 @@ void StateMap::reduce(StateSpace& m) const {
   m.B = m.B(kept(), Eigen::all).eval();
   m.C = times_map(m.C, *this);
   m.states = map_->names;
-  m.rates = pick(m.rates, kept());
+  m.rates = names_at(m.rates, kept());
 }
 
 }  // namespace titop::detail
