@@ -11,4 +11,4 @@ endforeach()
 
 include(${ROOT}/emit/cpp/titop-generate-model.cmake)
 set(CMAKE_CURRENT_BINARY_DIR ${FOLDER})
-titop_generate_model(lag SCENE lag.cpp DATA ${DATA} SAMPLE_TIME ${SAMPLE_TIME})
+titop_generate_model(lag ${KEYWORD} lag.cpp DATA ${DATA} SAMPLE_TIME ${SAMPLE_TIME})

@@ -1,5 +1,5 @@
 # titop_generate_model(NAME
-#   SCENE file.cpp ...          # sources that define: titop::Diagram FUNCTION();
+#   DIAGRAM file.cpp ...        # sources that define: titop::Diagram FUNCTION(); SCENE in titop 0.1
 #   [FUNCTION function]         # its name, in the global namespace; NAME if left out
 #   [SAMPLE_TIME seconds]       # also `step`, exact for inputs held that long
 #   [STATES automatic|model|modes]
@@ -11,9 +11,10 @@
 # "NAME.hpp". Where doctest is found (find_package(doctest) before) and tests are enabled, NAME_test
 # proves the header in ctest.
 function(titop_generate_model name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "FUNCTION;SAMPLE_TIME;STATES" "SCENE;DATA;LIBRARIES")
-  if(arg_UNPARSED_ARGUMENTS OR NOT arg_SCENE)
-    message(FATAL_ERROR "titop_generate_model(${name}): give SCENE file.cpp ...; "
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "FUNCTION;SAMPLE_TIME;STATES" "DIAGRAM;SCENE;DATA;LIBRARIES")
+  list(APPEND arg_DIAGRAM ${arg_SCENE})
+  if(arg_UNPARSED_ARGUMENTS OR NOT arg_DIAGRAM)
+    message(FATAL_ERROR "titop_generate_model(${name}): give DIAGRAM file.cpp ...; "
                         "not understood: '${arg_UNPARSED_ARGUMENTS}'")
   endif()
   if(NOT arg_FUNCTION)
@@ -64,7 +65,7 @@ int main(int, char** arguments) try {
   return 1;
 }
 ]])
-  add_executable(${name}_generate ${folder}/generate.cpp ${arg_SCENE})
+  add_executable(${name}_generate ${folder}/generate.cpp ${arg_DIAGRAM})
   target_link_libraries(${name}_generate PRIVATE titop::titop ${arg_LIBRARIES})
   # The files are left alone where they do not change; the stamp says when that was looked at.
   add_custom_command(OUTPUT ${folder}/written
