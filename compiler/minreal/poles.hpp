@@ -35,11 +35,12 @@ std::string xi_of_bodies(const Pole& pole);
 
 /// Poles sorted by frequency. Undamped and proportionally damped models are solved as symmetric
 /// problems, so that undamped poles lie exactly on the axis and slow ones have as many digits as
-/// fast ones (`eigh_graded`; if a rigid motion is spread over several states, or beyond 400 pairs,
-/// poles slower than 3e-7 of the fastest are returned as 0). States that A couples to no others are
-/// exact poles. Other models: poles at 0 by rows of A that depend on the others up to the rounding
-/// of each entry (minreal/at_zero.hpp): momenta that rotors, joints and controllers conserve; the
-/// others are eigenvalues of the scaled A without these. O(n^3).
+/// fast ones (`eigh_graded`; if a rigid motion is spread over several states, poles slower than
+/// 3e-7 of the fastest are returned as 0, and the relative error of one that is k times slower is
+/// k^2 times larger). States that A couples to no others are exact poles. Other models: poles at 0
+/// by rows of A that depend on the others up to the rounding of each entry (minreal/at_zero.hpp):
+/// momenta that rotors, joints and controllers conserve; the others are eigenvalues of the scaled A
+/// without these. O(n^3).
 ///
 /// `rounding`: of the entries of A, as of a dense model with cancellation; empty: 2.2e-16 of each.
 /// System::poles gives that of the factors, and for a minimal model 2.2e-16 of each entry and as
