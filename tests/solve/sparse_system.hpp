@@ -59,6 +59,22 @@ Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic> solve(const titop::solve::Facto
   return x;
 }
 
+/// Of the transposed matrix: right-hand sides by variable, unknowns by row.
+template <class T>
+Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic> solve_transposed(
+    const titop::solve::Factors<T>& factors,
+    const Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>& b) {
+  RowMatrix<T> rhs(b.rows(), b.cols());
+  Eigen::Index row = 0;
+  const auto& plan = factors.plan();
+  for (std::size_t v = 0; v < plan.first.size(); ++v) {
+    const int size = plan.structure.variable_size[v];
+    rhs.middleRows(plan.first[v], size) = b.middleRows(row, size);
+    row += size;
+  }
+  return factors.solve_transposed(rhs);
+}
+
 using titop::linalg::at;
 
 /// Pairs of groups that see each other; group i also sees itself.

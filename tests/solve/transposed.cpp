@@ -12,19 +12,6 @@ using titop_test::Rng;
 
 namespace {
 
-/// Right-hand sides by variable, solutions by row.
-MatrixXd transposed(const Factors<double>& factors, const MatrixXd& b) {
-  const auto& plan = factors.plan();
-  RowMatrix<double> g(b.rows(), b.cols());
-  Eigen::Index row = 0;
-  for (std::size_t v = 0; v < plan.first.size(); ++v) {
-    const int size = plan.structure.variable_size[v];
-    g.middleRows(plan.first[v], size) = b.middleRows(row, size);
-    row += size;
-  }
-  return factors.solve_transposed(g);
-}
-
 /// Rows and columns times powers of two, 2^-20 to 2^20.
 void scale(System& s, Rng& rng) {
   MatrixXd A = s.to_dense();
@@ -54,7 +41,7 @@ TEST_CASE("transposed: solutions as by dense LU on trees, rings, stars, grids an
       CAPTURE(kind.name);
       const Factors<double> factors = factors_of(s.structure, s.entries);
       REQUIRE(!factors.health().singular);
-      const MatrixXd x = transposed(factors, b);
+      const MatrixXd x = solve_transposed<double>(factors, b);
       if (seed % 2 == 0) {
         CHECK((A.transpose() * x - b).cwiseAbs().maxCoeff() <=
               1e-12 * (A.cwiseAbs().transpose() * x.cwiseAbs() + b.cwiseAbs()).maxCoeff());
@@ -66,29 +53,5 @@ TEST_CASE("transposed: solutions as by dense LU on trees, rings, stars, grids an
       CHECK((x - exact).norm() <=
             1e-14 * svd.singularValues()(0) / svd.singularValues().tail(1)(0) * exact.norm());
     }
-  }
-}
-
-TEST_CASE("transposed: full matrices of 0 to 12 rows, permuted") {
-  for (int n = 0; n <= 12; ++n) {
-    Rng rng(static_cast<std::uint64_t>(n) + 1);
-    Structure structure;
-    std::vector<int> all;
-    for (int v = 0; v < n; ++v) structure.add_variable(1), all.push_back(v);
-    std::vector<RowEntries<double>> entries;
-    for (int r = 0; r < n; ++r) {
-      structure.add_row(1, all);
-      RowEntries<double> row;
-      for (int v = 0; v < n; ++v)  // the largest entry is far off the diagonal
-        row.push_back(rng.matrix(1, 1) +
-                      MatrixXd::Constant(1, 1, v == (5 * r + 2) % n ? 3.0 : 0.0));
-      entries.push_back(row);
-    }
-    CAPTURE(n);
-    System s{structure, entries};
-    const MatrixXd A = s.to_dense(), b = rng.matrix(n, 2);
-    const MatrixXd x = transposed(factors_of(structure, entries), b);
-    REQUIRE(x.rows() == n);
-    if (n > 0) CHECK((A.transpose() * x - b).norm() <= 1e-13 * A.norm() * x.norm());
   }
 }
