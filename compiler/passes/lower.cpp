@@ -5,6 +5,7 @@
 #include <titop/compiler/passes/lower/lowering.hpp>
 #include <titop/compiler/passes/lower/open_motions.hpp>
 #include <titop/compiler/passes/lower/rigid_motions.hpp>
+#include <titop/compiler/passes/lower/shared_motions.hpp>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/graph/linalg/index.hpp>
 
@@ -63,6 +64,14 @@ struct Lowered {
         equations.back().of_block = true;
       }
   }
+
+  void shared_motions(Graph& to) {
+    for (const Lowering::SharedMotion& motion : l.shared) {
+      const int node = add_shared_motion(to, motion), out = to.nodes[at(node)].first_signal;
+      equation({Origin::Of::algebraic, out}, out, {}, to.nodes[at(node)].where);
+      equations.back().of_block = true;
+    }
+  }
 };
 
 Graph without_equations(const Graph& g) {
@@ -87,6 +96,7 @@ Stage lower(Stage stage) {
   Graph g = without_equations(*stage.source);
   auto all_drives = std::make_shared<const Drives>(*stage.source);
   Lowering l(*stage.source, stage.values, all_drives, stage.motions);
+  l.share(find_shared_motions(stage, *stage.source));
   if (!g.parameters.empty()) stage.drives = std::move(all_drives);
   Lowered out{l};
   out.equations.reserve(stage.source->equations.size() + g.channels.size());
@@ -100,17 +110,25 @@ Stage lower(Stage stage) {
       g.nodes[at(i)].lowered = true;
       ++algebraic;
     }
+  out.shared_motions(g);
   for (int o = 0; o < static_cast<int>(g.outputs.size()); ++o)
     g.outputs[at(o)].terms = out.terms({Origin::Of::output, o}, g.outputs[at(o)].where);
   if (!l.mistakes.empty()) throw Error(std::move(l.mistakes));
   if (!l.missing.empty()) throw std::logic_error("a motion without an Integrator");
+  if (l.astray) throw std::logic_error("a shared motion that does not lead to its anchor");
   g.equations = std::move(out.equations);
   stage.origins = std::move(out.origins);
   stage.graph = std::move(g);
   stage.notes.push_back(
       {Note::Kind::info, "lower",
        fmt::format("{} blocks, of which {} became coefficients (sums, gains); {} equations",
-                   stage.graph.nodes.size(), algebraic, stage.graph.equations.size())});
+                   stage.source->nodes.size(), algebraic, stage.graph.equations.size())});
+  if (!l.shared.empty())
+    stage.notes.push_back(
+        {Note::Kind::info, "lower",
+         fmt::format("{} positions and rates along long chains are unknowns of their own: several "
+                     "equations read them",
+                     l.shared.size())});
   return stage;
 }
 
@@ -118,12 +136,13 @@ bool lower_again(const Stage& stage, const std::vector<int>& origins, ParameterV
                  const std::function<bool(int, std::span<const NumericTerm>)>& take) {
   Lowering l(*stage.source, values, stage.drives, stage.motions);
   l.numbers_only = true;
+  l.share(shared_motions_of(stage));
   std::vector<NumericTerm> terms;
   return std::all_of(origins.begin(), origins.end(), [&](int origin) {
     terms.clear();
     for (Summand& s : summed(l.amount(stage.origins[at(origin)])))
       terms.push_back({s.signal, std::move(s.c)});
-    return l.missing.empty() && take(origin, terms);
+    return l.missing.empty() && !l.astray && take(origin, terms);
   });
 }
 

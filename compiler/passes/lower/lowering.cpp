@@ -36,6 +36,10 @@ Amount Lowering::own_motion(int channel) const {
 Amount Lowering::integrated(Amount sum, Level level) {
   Amount result;
   for (Summand& p : sum) {
+    if (at(p.signal) >= g.signals.size()) {  // shared
+      result.push_back(std::move(p));
+      continue;
+    }
     const Signal& s = g.signals[at(p.signal)];
     if (s.role == Signal::Role::state || s.role == Signal::Role::external) {
       result.push_back(std::move(p));
@@ -91,13 +95,18 @@ Amount Lowering::added_to(int channel) {
 Amount Lowering::terms(const std::vector<Term>& list) {
   Amount sum;
   for (const Term& t : list) {
+    const bool moves = t.of == Term::Of::position || t.of == Term::Of::rate;
+    const Level level = t.of == Term::Of::rate ? Level::rate : Level::position;
+    if (moves && readings) {
+      readings->emplace_back(g.signals[at(t.signal)].channel, level);
+      continue;
+    }
     MatrixXd c = coefficient_of(t);
     if (!c.allFinite())
       throw Error(Code::not_finite, fmt::format("the coefficient of {} is not finite", print(g, t)),
                   "look at its gains and parameters");
     const int channel = g.signals[at(t.signal)].channel;
-    if (t.of == Term::Of::position || t.of == Term::Of::rate) {
-      const Level level = t.of == Term::Of::rate ? Level::rate : Level::position;
+    if (moves) {
       append(sum, integrated(times(c, structure(g, t), motion(channel, level)), level));
       continue;
     }
@@ -125,30 +134,40 @@ void Lowering::walk(Amount& sum, WayPoint at_channel, Level level) {
   while (next) {
     const WayPoint here = std::move(*next);
     next.reset();
-    const Drive& d = drive[at(here.channel)];
-    const bool back = visiting[at(here.channel)];  // round a closed chain: the motion of all of it
-    if (back || (!d.accel.empty() && d.free > 0)) {
+    if (visiting[at(here.channel)]) {  // round a closed chain: the motion of all of it
       append(sum, times(here.factor, here.declared, own_motion(here.channel)));
       break;
+    }
+    if (const int m = shared_motion(here.channel, level); m >= 0) {
+      sum.push_back({static_cast<int>(g.signals.size()) + m, here.factor, here.declared});
+      if (!shared[at(m)].grounded) next = at_anchor(m, here);
+      continue;
     }
     visiting[at(here.channel)] = 1;
     way.push_back(here.channel);
-    if (d.accel.empty()) {
-      next = through_body(sum, here, level);
-      continue;
-    }
-    std::vector<WayPoint> ties;
-    Amount inputs;
-    if (!find_ties(here, level, ties, inputs)) {  // prescribed
-      append(sum, times(here.factor, here.declared, own_motion(here.channel)));
-      break;
-    }
-    append(sum, std::move(inputs));
-    if (ties.size() == 1) next = std::move(ties.front());
-    for (WayPoint& tie : ties)
-      if (ties.size() > 1) walk(sum, std::move(tie), level);
+    std::vector<WayPoint> points = step(sum, here, level);
+    if (points.size() == 1) next = std::move(points.front());
+    for (WayPoint& point : points)
+      if (points.size() > 1) walk(sum, std::move(point), level);
   }
   for (const int channel : way) visiting[at(channel)] = 0;
+}
+
+/// The points that this one follows, and the motion that it has by itself; none if that is all.
+std::vector<Lowering::WayPoint> Lowering::step(Amount& sum, const WayPoint& here, Level level) {
+  const Drive& d = drive[at(here.channel)];
+  std::vector<WayPoint> ties;
+  if (d.accel.empty()) {
+    if (auto next = through_body(sum, here, level)) ties.push_back(std::move(*next));
+    return ties;
+  }
+  Amount inputs;
+  if (d.free > 0 || !find_ties(here, level, ties, inputs)) {  // prescribed, or in part
+    append(sum, times(here.factor, here.declared, own_motion(here.channel)));
+    return {};
+  }
+  append(sum, std::move(inputs));
+  return ties;
 }
 
 /// The rate or position of w of an opened parameter in an acceleration: an input of its own.
@@ -259,6 +278,7 @@ Amount Lowering::force(int channel) {
 
 /// out = D in.
 Amount Lowering::algebraic(int output) {
+  if (at(output) >= g.signals.size()) return against_anchor(shared[at(output) - g.signals.size()]);
   const Signal& y = g.signals[at(output)];
   const Node& node = g.nodes[at(y.node)];
   meet_all(*node.block);
@@ -281,6 +301,7 @@ Amount Lowering::algebraic(int output) {
 }
 
 Amount Lowering::all_rows(const Origin& o) {
+  flat = o.of == Origin::Of::output;  // no row of the joint system
   switch (o.of) {
     case Origin::Of::accel:
     case Origin::Of::one_way: return terms(g.equations[at(o.index)].terms);

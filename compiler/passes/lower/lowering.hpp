@@ -27,6 +27,20 @@ struct Lowering {
   /// of w.
   std::set<std::pair<int, Level>> unopened = {};
   bool numbers_only = false;  ///< structure is known already: none is found
+  std::vector<std::pair<int, Level>>* readings = nullptr;  ///< if given: motions are listed there
+
+  /// The motion of a channel against a point further up its way: a signal of its own
+  /// (shared_motions.hpp).
+  struct SharedMotion {
+    int channel = -1;
+    Level level = Level::position;
+    int anchor = -1;        ///< channel against which it counts
+    bool grounded = false;  ///< the anchor does not move
+  };
+  std::vector<SharedMotion> shared = {};  ///< their signals follow those of g; upper ones first
+  std::vector<int> shared_at = {};        ///< 2 channel + level -> index; -1, or empty: none
+  bool flat = false;                      ///< they are written out
+  bool astray = false;                    ///< a way up no longer leads to the anchor
 
   Lowering(const Graph& graph, ParameterValues v, std::shared_ptr<const Drives> d,
            std::vector<RigidMotion> m)
@@ -70,6 +84,19 @@ struct Lowering {
     Pattern declared;
   };
   void walk(Amount& sum, WayPoint at_channel, Level level);
+  std::vector<WayPoint> step(Amount& sum, const WayPoint& here, Level level);
+  void share(std::vector<SharedMotion> list);
+  int shared_motion(int channel, Level level) const;
+  WayPoint up_from(const SharedMotion& motion, Amount& sum);
+  Amount against_anchor(const SharedMotion& motion);
+  WayPoint at_anchor(int motion, const WayPoint& here);
+  /// The way from the channel of a shared motion to its anchor.
+  struct ToAnchor {
+    Eigen::MatrixXd factor;
+    Pattern declared;
+    std::vector<int> met;  ///< parameters
+  };
+  std::vector<ToAnchor> to_anchor = {};  ///< of `shared`, once one is needed
   bool find_ties(const WayPoint& here, Level level, std::vector<WayPoint>& ties, Amount& inputs);
   void add_opened(const WayPoint& w, Level level, Amount& inputs);
   void add_opened_motions(Amount& sum, const Node& node, const Kinematics& k, const WayPoint& by,

@@ -2,6 +2,7 @@
 #include <titop/compiler/passes/lower/by_name.hpp>
 #include <titop/compiler/passes/lower/lowering.hpp>
 #include <titop/compiler/passes/lower/rigid_motions.hpp>
+#include <titop/compiler/passes/lower/shared_motions.hpp>
 #include <titop/graph/drives.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/nodes/lti.hpp>
@@ -89,6 +90,7 @@ void add_rigid_motions(Stage& stage, Graph& g) {
   std::set<RigidMotion> missing;
   {
     Lowering l(g, stage.values, std::make_shared<const Drives>(g), stage.motions);
+    l.share(find_shared_motions(stage, g));
     const auto look = [&](const std::vector<Term>& terms, const SourceLine& where) {
       for (const Term& t : terms)
         if (t.of == Term::Of::position || t.of == Term::Of::rate)
