@@ -97,17 +97,26 @@ struct JointBuilder {
       piece.entry = j.variable_of[at(m.signal)];  // the variable, until the row is complete
       if (piece.entry >= 0) over.push_back(piece.entry);
       j.pieces.push_back(piece);
-      if (signal_of.role == Signal::Role::state) mention_inputs(m.signal);
+      if (signal_of.role == Signal::Role::state) mention_inputs(m.signal, over);
     }
   }
 
   /// At some s a state depends on its inputs: one plan serves both.
-  void mention_inputs(int state) {
+  void mention_inputs(int state, std::vector<int>& variables) const {
     const int node = g.signals[at(state)].node;
     for (int i = g.nodes[at(node)].first_signal; i < state; ++i)
       if (const Signal& u = g.signals[at(i)]; u.role == Signal::Role::input && u.active)
         for (const SignalTerm& m : j.meaning(i))
-          if (const int v = j.variable_of[at(m.signal)]; v >= 0) over.push_back(v);
+          if (const int v = j.variable_of[at(m.signal)]; v >= 0) variables.push_back(v);
+  }
+
+  /// The variables on which a piece of the row being made depends.
+  std::vector<int> variables_of(const Piece& p) const {
+    if (p.entry >= 0) return {p.entry};
+    std::vector<int> result;
+    if (p.of != Piece::Left::state && g.signals[at(p.signal)].role == Signal::Role::state)
+      mention_inputs(p.signal, result);
+    return result;
   }
 
   void add_equation(int index) {
@@ -167,54 +176,50 @@ struct JointBuilder {
     }
   }
 
-  /// The row is complete. A row over many variables (a hub's force, a sum of a thousand sensors)
-  /// would be carried through the fronts of all of them: it is split into partial sums, which are
-  /// unknowns.
+  /// The row is complete. A row over many variables (a hub's force, a sum of a thousand sensors,
+  /// the position of the tip of a long chain) would be carried through the fronts of all of them:
+  /// it is split into partial sums, which are unknowns.
   void close_row(int stage_row, int size) {
     detail::keep_each_once(over);
     const Row& row = stage.rows[at(stage_row)];
     const int target = row.equation >= 0 ? g.equations[at(row.equation)].target : row.output;
-    if (!reads_states())
-      while (over.size() > kMost) sum_up(stage_row, size, g.signals[at(target)]);
+    while (over.size() > kMost) sum_up(stage_row, size, g.signals[at(target)]);
     finish_row(stage_row, size, over);
-  }
-
-  /// An equation that reads states depends, at some s, on their inputs: it stays whole.
-  bool reads_states() const {
-    return std::any_of(j.pieces.begin() + j.piece_begin.back(), j.pieces.end(),
-                       [&](const Piece& p) {
-                         return p.entry < 0 && p.of != Piece::Left::state &&
-                                g.signals[at(p.signal)].role == Signal::Role::state;
-                       });
   }
 
   static constexpr std::size_t kMost = 12, kTogether = 4;
 
-  /// Replaces each four neighbouring variables of the row by their partial sum.
+  /// Replaces each four neighbouring variables of the row by their partial sum; a state goes with
+  /// the first of its inputs, and the others come along.
   void sum_up(int stage_row, int size, const Signal& like) {
     const auto begin = j.pieces.begin() + j.piece_begin.back();
-    std::vector<Piece> all(begin, j.pieces.end()), top;
+    const std::vector<Piece> all(begin, j.pieces.end());
+    std::vector<Piece> top;
     j.pieces.erase(begin, j.pieces.end());
-    std::vector<int> sums;
-    const auto group_of = [&](int variable) {
-      return static_cast<std::size_t>(std::lower_bound(over.begin(), over.end(), variable) -
-                                      over.begin()) /
-             kTogether;
+    struct Group {
+      std::vector<Piece> pieces;
+      std::vector<int> members;
     };
-    std::vector<std::vector<Piece>> groups((over.size() + kTogether - 1) / kTogether);
-    for (const Piece& p : all) (p.entry < 0 ? top : groups[group_of(p.entry)]).push_back(p);
-    for (std::size_t k = 0; k < groups.size(); ++k) {
+    std::vector<Group> groups((over.size() + kTogether - 1) / kTogether);
+    for (const Piece& p : all) {
+      const std::vector<int> of = variables_of(p);
+      const auto first = std::lower_bound(
+          over.begin(), over.end(), of.empty() ? -1 : *std::min_element(of.begin(), of.end()));
+      Group& group = groups[static_cast<std::size_t>(first - over.begin()) / kTogether];
+      (of.empty() ? top : group.pieces).push_back(p);
+      if (!of.empty()) group.members.insert(group.members.end(), of.begin(), of.end());
+    }
+    std::vector<int> sums;
+    for (Group& group : groups) {
+      if (group.pieces.empty()) continue;
       const int sum = static_cast<int>(j.variables.size());
       add_variable(-1, size, like);
       sums.push_back(sum);
       top.push_back({.of = Piece::Left::one, .entry = sum, .size = size});
-      groups[k].push_back({.of = Piece::Left::one, .sign = -1, .entry = sum, .size = size});
-      std::vector<int> members(
-          over.begin() + static_cast<std::ptrdiff_t>(k * kTogether),
-          over.begin() + static_cast<std::ptrdiff_t>(std::min(over.size(), (k + 1) * kTogether)));
-      members.push_back(sum);
-      j.pieces.insert(j.pieces.end(), groups[k].begin(), groups[k].end());
-      finish_row(stage_row, size, members);
+      group.pieces.push_back({.of = Piece::Left::one, .sign = -1, .entry = sum, .size = size});
+      group.members.push_back(sum);
+      j.pieces.insert(j.pieces.end(), group.pieces.begin(), group.pieces.end());
+      finish_row(stage_row, size, group.members);
     }
     j.pieces.insert(j.pieces.end(), top.begin(), top.end());
     over = std::move(sums);

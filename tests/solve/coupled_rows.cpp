@@ -234,3 +234,37 @@ TEST_CASE("coupled rows of bodies in space: as the equations as written, without
   const System turned = compile(scene(many, 0.6), {.minimize_up_to = 0}).update({{"phi", 0.2}});
   CHECK(off(turned.transfer(s)) <= 1e-9);
 }
+
+TEST_CASE("a force that reads the tip of a long chain: work as n log n, transfer as K, M") {
+  const auto chain = [](int n) {
+    Diagram d{"chain"};
+    std::vector<SpringMass::Handle> z;
+    for (int i = 0; i < n; ++i) {
+      z.push_back(d.add("z" + std::to_string(i), SpringMass{.mass = 1, .stiffness = 10}));
+      if (i == 0)
+        ground(z[0]);
+      else
+        mount(z[at(i)], z[at(i - 1)].child);
+    }
+    z[0].child.force += -3.0 * z.back().child.position;
+    z.back().child.force += d.input("u");
+    d.output("a") = z.back().child.accel;
+    return compile(d, {.minimize_up_to = 0});
+  };
+  const auto flops = [&](int n) {
+    return flops_of(*detail::data_of(chain(n)).skeleton->joint.plan);
+  };
+  CHECK(flops(400) <= 5.5 * flops(100));
+  for (const int n : {5, 13, 60}) {
+    const std::complex<long double> s(0.3, 2);
+    Wide K = Wide::Zero(n, n), u = Wide::Zero(n, 1);
+    for (int i = 0; i < n; ++i) {
+      K(i, i) = s * s + (i + 1 < n ? 20.0L : 10.0L);
+      if (i > 0) K(i, i - 1) = K(i - 1, i) = -10;
+    }
+    K(0, n - 1) += 3;
+    u(n - 1, 0) = s * s;
+    const Complex exact(K.partialPivLu().solve(u)(n - 1, 0));
+    CHECK(std::abs(chain(n).transfer({0.3, 2})(0, 0) - exact) <= 1e-12 * std::abs(exact));
+  }
+}
