@@ -104,7 +104,7 @@ steepest() {
 draw_growth() {
   local name=$1 column=$2 title=$3 ylabel=$4 per=$5 scene points
   rm -f "$work/$name.dat"
-  for scene in A BL C D K T CB F; do
+  for scene in A BL C D K T CB F SL SG; do
     points=$(awk -F, -v s=$scene -v c="$column" -v per="$per" \
       '$1 == s { v = c == "bytes" ? $9 + $10 : $c; print $2 "," v / (per ? $2 : 1) }' \
       "$out/growth.csv")

@@ -3,7 +3,8 @@
 /// of a simulation and those of the full system, and the order of plain truncation by frequency
 /// for the same accuracy. After each scene two rows for the rule that keeps all modes up to twice
 /// the band. Returns 1 if an error is above its bound. bench_reduction large: scenes of thousands
-/// of coordinates instead, step by step. docs/reduction/README.md explains the columns.
+/// of coordinates instead, step by step, and a block of 270 states. docs/reduction/README.md
+/// explains the columns.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,6 +17,7 @@
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/titop.hpp>
 
+#include "generate/draws.hpp"
 #include "scenes/satellite.hpp"
 #include "support/fine_grid.hpp"
 #include "support/in_time.hpp"
@@ -166,6 +168,37 @@ std::optional<ReducedSystem> reduced(const Diagram& d, const Scene& scene) try {
   return std::nullopt;
 }
 
+/// A block of 270 states, two inputs and two outputs, without structure: poles in a circle of
+/// radius 1 about -1.2.
+Diagram dense_block() {
+  constexpr Eigen::Index states = 270;
+  generate::Rng rng(7);
+  Lti block{.A = rng.matrix(states, states) * std::sqrt(3.0 / states),  // entries of variance 1/n
+            .B = rng.matrix(states, 2),
+            .C = rng.matrix(2, states),
+            .D = Eigen::MatrixXd::Zero(2, 2)};
+  block.A.diagonal().array() -= 1.2;
+  Diagram d{"dense block"};
+  auto K = d.add("K", block);
+  K.in = d.input("u", 2);
+  d.output("y", 2) = K.out;
+  return d;
+}
+
+/// Reduction of a block without modes, which is a dense model from the beginning.
+void dense() {
+  const Diagram d = dense_block();
+  for (const double accuracy : {1e-2, 1e-4, 1e-6}) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto made = reduced(d, {.band_hz = {0, 10}, .accuracy = accuracy});
+    if (!made) continue;
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    fmt::print("1,270,{:.0e},,,{},{:.2e},{:.1f}\n", accuracy, made->order(), made->bound().worst,
+               seconds.count());
+    std::fflush(stdout);
+  }
+}
+
 /// Thousands of coordinates: order and error after each step, and the total seconds.
 void large() {
   fmt::print("bodies,coordinates,accuracy,after_bodies,bodies_error,states,bound,seconds\n");
@@ -192,6 +225,7 @@ void large() {
 int main(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == "large") {
     large();
+    dense();
     return 0;
   }
   const bool quick = is_quick(argc, argv);

@@ -23,7 +23,7 @@ namespace titop::generate {
 
 namespace {
 
-constexpr std::array kNames{"A", "BL", "C", "D", "F", "K", "T", "CB", "R", "G"};
+constexpr std::array kNames{"A", "BL", "C", "D", "F", "K", "T", "CB", "R", "G", "SG", "SL"};
 
 using titop::linalg::at;
 
@@ -194,6 +194,58 @@ Diagram grid(int n) {
   return d;
 }
 
+/// A spring and a damper between two masses, as equations of their positions and rates.
+void couple(const SpringMass::Handle& a, const SpringMass::Handle& b) {
+  const auto force =
+      30.0 * (b.child.position - a.child.position) + 0.1 * (b.child.rate - a.child.rate);
+  a.child.force += force;
+  b.child.force += -force;
+}
+
+SpringMass coupled_mass(Value mass) {
+  return {.mass = std::move(mass), .stiffness = 100, .damping = 0.1};
+}
+
+Diagram spring_grid(int n, const CaseOptions& options) {
+  Diagram d{"case SG"};
+  const int m = static_cast<int>(std::lround(std::sqrt(n)));
+  const Variation varied(d, options, m * m);
+  auto u = d.input("u");
+  std::vector<SpringMass::Handle> z;
+  z.reserve(at(m * m));
+  for (int j = 0; j < m; ++j)
+    for (int i = 0; i < m; ++i) {
+      z.push_back(d.add(fmt::format("z{}_{}", i + 1, j + 1), coupled_mass(varied(1, m * j + i))));
+      ground(z.back());
+      if (i > 0) couple(z[at(m * j + i - 1)], z.back());
+      if (j > 0) couple(z[at(m * (j - 1) + i)], z.back());
+    }
+  z.front().child.force += u;
+  d.output("a") = z.back().child.accel;
+  return d;
+}
+
+Diagram coupled_rows(int n, const CaseOptions& options) {
+  Diagram d{"case SL"};
+  const Variation varied(d, options, n);
+  auto u = d.input("u");
+  std::vector<SpringMass::Handle> z;
+  z.reserve(at(n));
+  for (int i = 0; i < n / 2; ++i)
+    for (const int row : {0, 1}) {
+      const char* const name = row ? "b" : "a";
+      z.push_back(d.add(fmt::format("{}{}", name, i + 1), coupled_mass(varied(1, 2 * i + row))));
+      if (i == 0)
+        ground(z.back());
+      else
+        mount(z.back(), z[z.size() - 3].child);
+      if (row) couple(z[z.size() - 2], z.back());
+    }
+  z.back().child.force += u;
+  d.output("a") = z.back().child.accel;
+  return d;
+}
+
 }  // namespace
 
 std::string name_of(Case c) { return kNames[static_cast<std::size_t>(c)]; }
@@ -216,6 +268,8 @@ Diagram case_diagram(Case c, int n, const CaseOptions& options) {
     case Case::F: return fan(n, options);
     case Case::R: return ring(n);
     case Case::G: return grid(n);
+    case Case::SG: return spring_grid(n, options);
+    case Case::SL: return coupled_rows(n, options);
   }
   throw std::invalid_argument("no such case");
 }

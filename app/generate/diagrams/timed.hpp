@@ -17,13 +17,16 @@ enum class Case {
   CB,  ///< comb: a chain of flexible bodies, one more at every joint of it, free root
   R,   ///< ring of flexible bodies, closed on itself, free (n >= 3)
   G,   ///< planar grid: n rigid nodes (rounded to a square), beams between neighbours, free
+  SG,  ///< planar grid of n masses (rounded to a square), each on a spring on the ground and with
+       ///< springs to its neighbours, which read positions
+  SL,  ///< two rows of n/2 spring-masses on the ground, springs from mass to mass read positions
 };
 
 /// "A", "BL", ...
 std::string name_of(Case c);
 Case case_of(const std::string& name);
 
-/// Use of the parameter "p": masses (A, BL, C) or mounting angles (D, F, K, T, CB).
+/// Use of the parameter "p": masses (A, BL, C, SG, SL) or mounting angles (D, F, K, T, CB).
 enum class Varies {
   nothing,  ///< there is no parameter
   one,      ///< that of body n/2
@@ -36,9 +39,9 @@ struct CaseOptions {
   double p = 1;  ///< nominal value of the parameter
 };
 
-/// The diagram of case c with n bodies (F: appendages). From the force at the last mass (A, BL, C)
-/// or the wrench at the root (R: at the first joint) to the acceleration of the last body (R: half
-/// way round). R and G have no parameter and no ratio.
+/// The diagram of case c with n bodies (F: appendages). From the force at the last mass (A, BL, C,
+/// SL; SG: at the first) or the wrench at the root (R: at the first joint) to the acceleration of
+/// the last body (R: half way round). R and G have no parameter; R, G, SG and SL have no ratio.
 Diagram case_diagram(Case c, int n, const CaseOptions& options = {});
 
 }  // namespace titop::generate
