@@ -15,6 +15,9 @@ std::vector<double> decibels(std::span<const std::complex<double>> values) {
   return result;
 }
 
+/// Angles of real numbers beside rounding of 1e-12 of their terms [deg].
+constexpr double kHalfTurn = 1e-10;
+
 std::vector<double> degrees(std::span<const std::complex<double>> values) {
   std::vector<double> result;
   double last = -90;
@@ -24,10 +27,11 @@ std::vector<double> degrees(std::span<const std::complex<double>> values) {
       continue;
     }
     double now = degrees(std::arg(value));
-    now += 360 * std::round((last - now) / 360);
-    if (std::abs(now - last) > 179) {
+    now += 360 * std::floor((last - now) / 360 + 0.5);
+    if (std::abs(now - last) > 180 - kHalfTurn) {
       const double other = now > last ? now - 360 : now + 360;
-      if (std::abs(other + 90) < std::abs(now + 90)) now = other;
+      const double nearer = std::abs(now + 90) - std::abs(other + 90);
+      if (nearer > kHalfTurn || (nearer > -kHalfTurn && other > now)) now = other;
     }
     result.push_back(last = now);
   }

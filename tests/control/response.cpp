@@ -53,7 +53,30 @@ TEST_CASE("angles of an undamped mode, of zeros and of poles") {
   CHECK(std::isnan(d[2]));
   CHECK(std::isnan(d[3]));
   CHECK(d[4] == -90);
+  CHECK(d[5] == 90);
   CHECK(std::abs(decibels(values)[4] / (20 * std::log10(2.0)) - 1) <= 1e-15);
+}
+
+TEST_CASE("angles of an undamped mode's rate, and of its acceleration with any damping") {
+  // From force to rate, s / (s^2 + 1): passive, from 90 to -90.
+  const auto angles = [](double damping, int power) {
+    std::vector<Complex> values;
+    for (const double w : {0.1, 0.4, 0.9, 1.2, 30.0}) {
+      const Complex s(0, w);
+      values.push_back(std::pow(s, power) / (s * s + damping * s + 1.0));
+    }
+    return degrees(values);
+  };
+  CHECK(angles(0, 1) == std::vector<double>{90, 90, 90, -90, -90});
+  for (const double damping : {1e-6, 1e-3, 0.1}) {
+    const std::vector<double> rate = angles(damping, 1), acceleration = angles(damping, 2);
+    CHECK(std::abs(rate[0] - 90) <= 0.1 * 90 * damping + 1e-9);
+    CHECK(std::abs(rate[4] + 90) <= 3 * damping);
+    // From 180 = -180 down: each pole turns the angle by -180 between its ends.
+    CHECK(std::abs(acceleration[0] + 180) <= 6 * damping + 1e-9);
+    CHECK(std::abs(acceleration[4] + 360) <= 3 * damping);
+    for (std::size_t i = 1; i < 5; ++i) CHECK(acceleration[i] < acceleration[i - 1]);
+  }
 }
 
 TEST_CASE("inputs by name, and a step of them") {
