@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <limits>
 #include <titop/analysis/control/loop.hpp>
 #include <titop/analysis/reduction/remove_signals.hpp>
 #include <titop/compiler/passes/stage.hpp>
@@ -85,7 +86,7 @@ void apply(Graph& g, const CutSignals& c, Wanted wanted) {
 }
 
 System compiled(const System& system, const std::vector<int>& nodes, Wanted wanted) {
-  return System(detail::compile_rewritten(detail::data_of(system), [&](const Stage& stage) {
+  const auto rewritten = [&](const Stage& stage) {
     Stage begin;
     begin.values = stage.values;
     begin.motions = stage.motions;
@@ -96,7 +97,11 @@ System compiled(const System& system, const std::vector<int>& nodes, Wanted want
     for (const CutSignals& c : cuts) apply(g, c, wanted);
     begin.source = std::make_shared<const Graph>(std::move(g));
     return begin;
-  }));
+  };
+  // Modes that the loop does not reach or see would count as poles of the closed loop.
+  constexpr int kOfAnySize = std::numeric_limits<int>::max();
+  return System(detail::compile_rewritten(detail::data_of(system), rewritten,
+                                          wanted == Wanted::L ? kOfAnySize : 0));
 }
 
 /// The node of this name; -1 with a mistake if it is no loop point.

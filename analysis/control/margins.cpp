@@ -187,9 +187,7 @@ Margins margins(const StateSpace& L, const MarginOptions& options) {
 }
 
 Margins margins(const ControlLoop& loop, const MarginOptions& options) {
-  const StateSpace& L = loop.L.state_space();
-  // Modes that the loop does not move or see would count as poles of the closed loop.
-  Margins m = margins(loop.L.order_verdict().judged ? L : minimize(L).model, options);
+  Margins m = margins(loop.L.state_space(), options);
   add_warnings(m, loop.L.notes());
   add_warnings(m, loop.L.dense_notes());
   return m;

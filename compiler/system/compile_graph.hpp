@@ -16,10 +16,11 @@ std::shared_ptr<const SystemData> compile_graph(const Graph& graph, const Option
 std::shared_ptr<const SystemData> compile_stage(Stage begin, const Options& options);
 
 /// All passes on the stage that `rewrite` makes of the system's diagram at its present values:
-/// Stage::source, values, motions and dependents, with the system's options. Cost: that of
-/// `compile`.
+/// Stage::source, values, motions and dependents, with the system's options, and minimized up to at
+/// least this number of states. Cost: that of `compile`.
 std::shared_ptr<const SystemData> compile_rewritten(
-    const SystemData& data, const std::function<Stage(const Stage&)>& rewrite);
+    const SystemData& data, const std::function<Stage(const Stage&)>& rewrite,
+    int minimize_up_to = 0);
 
 /// The system's diagram at its present values with these parameters taken out
 /// (compiler/passes/open/open.hpp): their w are inputs after the diagram's own, their z outputs,

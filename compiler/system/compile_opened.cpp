@@ -63,7 +63,7 @@ void refuse_moving_chains(const Skeleton& k, const std::vector<double>& values,
 }  // namespace
 
 std::shared_ptr<const SystemData> compile_rewritten(
-    const SystemData& d, const std::function<Stage(const Stage&)>& rewrite) {
+    const SystemData& d, const std::function<Stage(const Stage&)>& rewrite, int minimize_up_to) {
   const Skeleton& k = *d.skeleton;
   Stage begin;
   begin.source = k.stage.source;
@@ -72,6 +72,7 @@ std::shared_ptr<const SystemData> compile_rewritten(
   begin.dependents = k.stage.dependents;
   Options options = k.options;
   options.dump_to.clear();
+  options.minimize_up_to = std::max(options.minimize_up_to, minimize_up_to);
   return compile_stage(rewrite(begin), options);
 }
 

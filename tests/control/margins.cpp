@@ -319,3 +319,22 @@ TEST_CASE("of a diagram's loop point") {
   CHECK(close(m.loops.at(0).phase, pi / 2, 3));
   CHECK(to_string(m).find("90.00 deg") != std::string::npos);
 }
+
+TEST_CASE("of a loop of a hundred states, most of which it does not reach") {
+  // 50 equal undamped masses on a base of 50 kg: they move as one, with m = 50 kg and k = 500 N/m.
+  // L = (50 s + 50) (s^2 + 10) / (50 s^2 (s^2 + 20)).
+  Diagram d{"masses"};
+  auto base = d.add("base", SpringMass{.mass = 50, .stiffness = 0});
+  base.parent.accel = 0;
+  for (int i = 0; i < 50; ++i)
+    mount(d.add("z" + std::to_string(i), SpringMass{.mass = 1, .stiffness = 10}), base.child);
+  base.child.force += d.loop_point("law", -50.0 * base.child.position - 50.0 * base.child.rate);
+  d.output("x") = base.child.position;
+  const Margins found = margins(loop(compile(d), "law")),
+                exact = margins(ratio({1, 1, 10, 10}, {1, 0, 20, 0, 0}));
+  CHECK(found.stable);
+  CHECK(found.nyquist.closed_on_axis == 0);
+  CHECK(found.warnings.empty());
+  CHECK(close(found.loops.at(0).phase, exact.loops.at(0).phase.value, exact.loops[0].phase.omega));
+  CHECK(close(found.nearest, exact.nearest.value, exact.nearest.omega));
+}
