@@ -225,8 +225,9 @@ class Importer {
     for (const MeshPoint& point : mesh.points)
       if (may_be_port(mesh, point)) result_.ports.push_back(point.name);
     if (options_.parent.empty()) return;
-    take(scaled(fe::modal_data(mesh, options_.parent, options_.children, options_.modes),
-                options_.units));
+    ModeOptions modes = options_.modes;
+    if (modes.rayleigh) modes.rayleigh->mass *= time, modes.rayleigh->stiffness /= time;
+    take(scaled(fe::modal_data(mesh, options_.parent, options_.children, modes), options_.units));
   }
 
   /// A planar model has no mass along some directions.

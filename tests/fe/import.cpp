@@ -41,6 +41,21 @@ TEST_CASE("OP4 with its .asm: contents, checks, ports, and the body of tests/fe/
   CHECK(system.outputs().size() == 18);
 }
 
+TEST_CASE("Rayleigh damping is by seconds, whatever the file's unit of time") {
+  const fe::Rayleigh damping{0.8, 1e-4};
+  for (const double time : {1.0, 1e-3, 60.0}) {
+    const fe::Import found = fe::import_body(kOp4, {.parent = "3",
+                                                    .units = {.length = 1e-3, .time = time},
+                                                    .modes = {.kept = 8, .rayleigh = damping}});
+    REQUIRE(found.body);
+    for (Eigen::Index i = 0; i < 8; ++i) {
+      const double omega = found.body->omega(i);
+      CHECK(fe_test::relative(found.body->xi(i),
+                              (damping.mass / omega + damping.stiffness * omega) / 2) <= 1e-12);
+    }
+  }
+}
+
 TEST_CASE("DMIG without positions, CalculiX and CSV") {
   const std::string wing = kData + "/nastran_dmig_flying_wing/sol103_maewing1_femv5p1.pch";
   const fe::Import punch = fe::import_body(
