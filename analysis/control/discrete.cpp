@@ -35,7 +35,7 @@ StateSpace held_ramps(const StateSpace& m, double h) {
 
 /// The inverse, or singular.
 MatrixXd inverted(const MatrixXd& M, const std::string& message, const char* way_out) {
-  const linalg::Inverse inverse = linalg::inverse(M);
+  const linalg::Inverse inverse = linalg::equilibrated_inverse(M);
   if (M.rows() > 0 && !(inverse.rcond > static_cast<double>(M.rows()) * linalg::kEpsilon))
     throw Error(Code::singular, message, way_out);
   return inverse.matrix;

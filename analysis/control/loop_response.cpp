@@ -20,7 +20,7 @@ constexpr double kMostTurns = 1e5;  ///< of a delay, in quarters
 /// Rounding of the poles of the discrete model whose image by w = c (z - 1) / (z + 1) this is.
 double rounding_in_z(StateSpace m, double c) {
   const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(m.A.rows(), m.A.rows());
-  const linalg::Inverse inverse = linalg::inverse(c * I - m.A);
+  const linalg::Inverse inverse = linalg::equilibrated_inverse(c * I - m.A);
   // A pole at z = infinity, w = c, is not near the axis: the rounding of w alone counts.
   if (!(inverse.rcond > static_cast<double>(m.A.rows()) * linalg::kEpsilon)) return 0;
   m.A = inverse.matrix * (c * I + m.A);

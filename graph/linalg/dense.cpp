@@ -117,6 +117,14 @@ Inverse inverse(const MatrixXd& M) {
   return {lu.inverse(), lu.rcond()};
 }
 
+Inverse equilibrated_inverse(const MatrixXd& M) {
+  const Equilibration scale(M.cwiseAbs());
+  Inverse result = inverse(scale.rows.asDiagonal() * M * scale.cols.asDiagonal());
+  if (result.rcond > 0)
+    result.matrix = (scale.cols.asDiagonal() * result.matrix * scale.rows.asDiagonal()).eval();
+  return result;
+}
+
 namespace {
 
 void check(const MatrixXd& A, Eigen::ComputationInfo info) {

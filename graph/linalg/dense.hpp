@@ -32,6 +32,9 @@ struct Inverse {
   double rcond = 0;
 };
 Inverse inverse(const Eigen::MatrixXd& M);
+/// The same after scaling of rows and columns by powers of two: rcond does not depend on the units
+/// of states.
+Inverse equilibrated_inverse(const Eigen::MatrixXd& M);
 
 /// Eigenvalues of a real square matrix: of each of its parts separately, after a similarity scaling
 /// by powers of two (linalg/similarity_scaling.hpp). O(n^3). Throws not_finite for entries that are

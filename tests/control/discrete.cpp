@@ -44,6 +44,18 @@ TEST_CASE("a lag and a double integrator with the three rules") {
   }
 }
 
+TEST_CASE("Tustin's rule for modes far above the sample rate") {
+  for (const double omega : {1e6, 1e8, 1e11}) {
+    constexpr double h = 0.01;
+    const StateSpace mode = ratio({omega * omega}, {1, 0.01 * omega, omega * omega});
+    for (const double w : {1.0, 100.0}) {
+      const Complex s = 2 / h * std::tan(w * h / 2) * Complex(0, 1);
+      CHECK(near(at(discretize(mode, h, Discretization::tustin), w),
+                 omega * omega / (s * s + 0.01 * omega * s + omega * omega), 1e-12));
+    }
+  }
+}
+
 TEST_CASE("margins of a discrete integrator, of any period") {
   // k h / (z - 1) = at omega: size k h / (2 sin(w h / 2)), angle -90 - w h / 2 degrees.
   for (const double k : {0.5, 2.0})
