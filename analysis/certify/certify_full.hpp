@@ -110,6 +110,9 @@ struct FullCertificate {
     bool structure = false;
     std::string why_no_structure;  ///< "hub.parent.force is driven by K.out"
     bool reversed = false;         ///< compared with reversed momenta
+    /// Points with gyroscopic terms: "w1.parent", with the momentum there [N m s]; 0 for
+    /// antisymmetric gains that are none, such as from rates of translation to forces.
+    std::vector<std::pair<std::string, double>> momenta;
   } reciprocity;
 
   /// Verdict on the minimal dense model. If exact arithmetic finds states that were removed as

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <titop/analysis/certify/certify_full.hpp>
 #include <titop/analysis/certify/faults.hpp>
+#include <titop/compiler/passes/check/springs.hpp>
 
 /// The full certificate as text.
 namespace titop {
@@ -60,6 +61,7 @@ std::string to_string(const FullCertificate::Reciprocity& r) {
       fmt::format("{} forces: {}", r.forces,
                   r.asymmetry <= certification::kHolds ? "reciprocal" : "not reciprocal");
   if (r.reversed) text += " if all momenta are reversed";
+  if (!r.momenta.empty()) text += fmt::format(" ({})", passes::text_of(r.momenta));
   if (r.asymmetry > 0)
     text +=
         fmt::format(" (the accelerations at {} and {} due to the other force differ by {:.1e}, {})",

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 #include <titop/analysis/certify/reciprocity.hpp>
+#include <titop/compiler/passes/check/springs.hpp>
 #include <titop/compiler/system/system.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/linalg/rounding.hpp>
@@ -121,6 +122,7 @@ FullCertificate::Reciprocity check_reciprocity(const System& system, const passe
     no_structure = exception_among(*system.stage().source, values, points[points.size() / 2]);
   r.structure = no_structure.empty();
   r.reversed = r.structure && !transfers.reversed.empty();
+  r.momenta = passes::gyroscopic_points(*system.stage().source, values);
   r.why_no_structure = std::move(no_structure);
   const Asymmetry found = asymmetry(transfers);
   if (found.worst == 0) return r;

@@ -115,6 +115,13 @@ Json passivity(const FullCertificate::Passivity& p) {
                         {"structure", where(p.done, p.structure)}});
 }
 
+Json momenta(const std::vector<std::pair<std::string, double>>& list) {
+  Json result = Json::array();
+  for (const auto& [port, h] : list)
+    result.push_back({{"port", port}, {"N_m_s", h != 0 ? Json(h) : Json()}});
+  return result;
+}
+
 Json reciprocity(const FullCertificate::Reciprocity& r) {
   const bool off = r.done && !r.first.empty();
   return with(item(r), {{"forces", r.forces},
@@ -124,6 +131,7 @@ Json reciprocity(const FullCertificate::Reciprocity& r) {
                         {"second", where(off, r.second)},
                         {"structure", where(r.done, r.structure)},
                         {"reversed", where(r.done, r.reversed)},
+                        {"momenta", momenta(r.momenta)},
                         {"why_no_structure", where(r.done && !r.structure, r.why_no_structure)}});
 }
 

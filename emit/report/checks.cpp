@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <titop/analysis/certify/faults.hpp>
+#include <titop/compiler/passes/check/springs.hpp>
 #include <titop/emit/report/html.hpp>
 #include <titop/emit/report/subject.hpp>
 #include <titop/graph/linalg/rounding.hpp>
@@ -87,7 +88,9 @@ void add_reciprocity(std::vector<Item>& items, const FullCertificate::Reciprocit
                    fmt::format("Of {}: the largest |G_ij - G_ji| over sqrt(|G_ii| |G_jj|), G_ij "
                                "the acceleration at force i due to force j{}{}{}.",
                                count(static_cast<std::size_t>(r.forces), "force"),
-                               r.reversed ? ", G_ji with all momenta reversed" : "",
+                               r.reversed ? fmt::format(", G_ji with all momenta reversed ({})",
+                                                        passes::text_of(r.momenta))
+                                          : "",
                                r.first.empty() ? "" : fmt::format("; {} and {}", r.first, r.second),
                                r.structure ? "" : "; not required: " + r.why_no_structure),
                    r.structure ? judged(r.asymmetry, kHolds) : Mark::none});

@@ -194,4 +194,42 @@ ForceGains gyroscopic_gains(const Graph& g, ParameterValues values) {
   return result;
 }
 
+ForceGains rate_gains(const Graph& g, ParameterValues values) {
+  return gains(g, values, Term::Of::rate);
+}
+
+namespace {
+
+/// |h| if the gain on a port's rates is that of a momentum, h a x omega: torques by angular rates.
+double momentum_of(const MatrixXd& gain) {
+  if (gain.rows() != 6 || gain.cols() != 6) return 0;
+  MatrixXd rest = gain;
+  rest.bottomRightCorner<3, 3>().setZero();
+  // Of an antisymmetric matrix the three entries below the diagonal, each of them twice.
+  return rest.isZero(0) ? gain.norm() / std::sqrt(2.0) : 0;
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, double>> gyroscopic_points(const Graph& g,
+                                                              ParameterValues values) {
+  std::map<int, double> momentum;  // by channel
+  for (const auto& [pair, gain] : gyroscopic_gains(g, values)) {
+    const bool own = pair.first == pair.second;
+    momentum[pair.first] = std::max(momentum[pair.first], own ? momentum_of(gain) : 0);
+    momentum[pair.second];
+  }
+  std::vector<std::pair<std::string, double>> result;
+  for (const auto& [channel, h] : momentum) result.emplace_back(channel_name(g, channel), h);
+  return result;
+}
+
+std::string text_of(const std::vector<std::pair<std::string, double>>& points) {
+  std::vector<std::string> list;
+  for (const auto& [port, h] : points)
+    list.push_back(h > 0 ? fmt::format("{:.6g} N m s at {}", h, port)
+                         : fmt::format("gyroscopic terms at {}", port));
+  return fmt::format("{}", fmt::join(list, ", "));
+}
+
 }  // namespace titop::passes

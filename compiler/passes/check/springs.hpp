@@ -33,8 +33,18 @@ using ForceGains = std::map<std::pair<int, int>, Eigen::MatrixXd>;
 /// m degrees of freedom that such springs tie together.
 std::string why_no_springs(const Graph& graph, ParameterValues values);
 
+/// Gains from rates to forces. O(terms).
+ForceGains rate_gains(const Graph& graph, ParameterValues values);
+
 /// The antisymmetric part of the gains from rates to forces: gyroscopic terms, which do no work.
 /// Empty if there is none, beyond 1e-12 of the gains. O(terms).
 ForceGains gyroscopic_gains(const Graph& graph, ParameterValues values);
+
+/// The ports with gyroscopic terms, "w1.parent", and the momentum there [N m s]; 0 if the terms are
+/// not torques by angular rates of the same port. O(terms).
+std::vector<std::pair<std::string, double>> gyroscopic_points(const Graph& graph,
+                                                              ParameterValues values);
+/// "40 N m s at w1.parent, ...".
+std::string text_of(const std::vector<std::pair<std::string, double>>& gyroscopic_points);
 
 }  // namespace titop::passes
