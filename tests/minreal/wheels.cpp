@@ -110,3 +110,18 @@ TEST_CASE("wheels: three or four wheels become code") {
     CHECK(generate_cpp(system, {.sample_time = 0.1}).error <= 1e-6);
   }
 }
+
+TEST_CASE("wheels: on a plate on springs, the order is decided, and that of the momenta") {
+  // Positions of the boom's twelve modes and the plate's six axes; rates of these, of the four
+  // wheels, and of the hub's three rotations. Of the wheels the motion that exerts no torque is not
+  // driven; of the hub's rates the turn about the sum of the momenta (without them, all three) has
+  // no effect on accelerations.
+  for (const double h : {0.0, 1e-2, 1.0, 8.0, 40.0}) {
+    CAPTURE(h);
+    const System system = compile(scenes::wheels::satellite(h, scenes::wheels::Motors::off, true));
+    const OrderVerdict verdict = system.order_verdict();
+    CAPTURE(to_string(verdict));
+    CHECK(verdict.order == (h == 0 ? 36 + 3 : 36 + 5));
+    CHECK(verdict.decided());
+  }
+}
