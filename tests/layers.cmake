@@ -39,7 +39,7 @@ room(analysis/sweep            compiler/system)
 # each entry.
 room(analysis/certify          compiler/passes compiler/definition compiler/certificate
                                compiler/minreal compiler/system)
-room(analysis/reduction        compiler/system)
+room(analysis/reduction        compiler/passes compiler/system)
 # Above blocks: it makes bodies of parts of a scene.
 room(analysis/damping          blocks compiler/system analysis/reduction)
 room(analysis/bracket          compiler/system)

@@ -62,7 +62,7 @@ double start_of(const std::vector<Complex>& poles, double high) {
 Band band_of(const System& system, const Scene& scene, const Whole& w) {
   Band band{2 * std::numbers::pi * scene.band_hz[0], 2 * std::numbers::pi * scene.band_hz[1], 0};
   if (band.low > 0 || w.loose == 0) return band;
-  refuse_integrals(system, w);
+  if (!w.loose_coupled) refuse_integrals(system, w);  // else by samples: refuse_growing
   band.start = start_of(SampledSpectrum(w).poles, band.high);
   return band;
 }

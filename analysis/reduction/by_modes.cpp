@@ -5,11 +5,13 @@
 #include <map>
 #include <numbers>
 #include <ranges>
+#include <titop/analysis/reduction/rate_feedback.hpp>
 #include <titop/analysis/reduction/reduction.hpp>
 #include <titop/analysis/reduction/sequence.hpp>
 #include <titop/analysis/reduction/sharpen.hpp>
 #include <titop/analysis/reduction/spare.hpp>
 #include <titop/analysis/reduction/twins.hpp>
+#include <titop/compiler/system/compile_graph.hpp>
 #include <utility>
 
 namespace titop::detail {
@@ -24,16 +26,14 @@ class ByModes : public Reduction {
  public:
   ByModes(Setting& setting, const Graph& graph) : setting_(setting) {
     setting_.timed("modes", [&] {
-      Coordinates c = coordinates(setting_.model, *setting_.data);
-      setting_.note_structure(c.size());
-      join(c);
-      if (c.size() > setting_.scene.whole_up_to) refuse_size(setting_, c.size());
-      whole_ = whole(setting_.model, c, positions_read(graph));
-      setting_.band = band_of(setting_.model, setting_.scene, whole_);
-      sharpen(whole_, setting_.model, 1.2 * setting_.band.high);
-      if (setting_.scene.bound == BoundKind::theorem) couple(whole_);
+      if (const auto rates = rate_feedback(graph, nominal_values(graph)))
+        read_with_rotors(*rates);
+      else
+        read_at_rest(graph);
     });
     setting_.take_samples(whole_);
+    if (whole_.loose_coupled)
+      refuse_growing(setting_.full, setting_.scene, setting_.band, setting_.samples);
   }
 
   SampledSpectrum spectrum() const override { return whole_; }
@@ -70,9 +70,53 @@ class ByModes : public Reduction {
   }
 
  private:
-  void join(Coordinates& c) {
+  /// Modes up to here are made sharper [rad/s].
+  double beyond() const { return 1.2 * (2 * pi * setting_.scene.band_hz[1]); }
+
+  void read_at_rest(const Graph& graph) {
+    read_whole(setting_.model, *setting_.data, graph);
+    setting_.band = band_of(setting_.model, setting_.scene, whole_);
+    sharpen(whole_, setting_.model, beyond());
+    if (setting_.scene.bound == BoundKind::theorem) couple(whole_);
+  }
+
+  /// The same of the structure at rest, with its momenta and dampers added afterwards.
+  void read_with_rotors(const RateFeedback& rates) {
+    const auto at_rest = compiled(rates.graph);
+    const System system(at_rest);
+    read_whole(system, *at_rest, rates.graph);
+    sharpen(whole_, system, beyond());
+    close(whole_, rates);
+    couple(whole_);
+    setting_.band = band_of(setting_.model, setting_.scene, whole_);
+    if (!rates.momenta.empty())
+      setting_.note("rotors", whole_.order(), whole_.order(),
+                    fmt::format("momenta of {} in a skew matrix", rates.momenta));
+  }
+
+  /// The structure at rest; there is no such form if its passes refuse it.
+  std::shared_ptr<const SystemData> compiled(const Graph& at_rest) const try {
+    Options options = setting_.options;
+    options.dump_to.clear();
+    return compile_graph(at_rest, options);
+  } catch (const Error& error) {
+    throw NoStructure(Code::bad_value,
+                      "with its rotors at rest: " + error.mistakes().front().message,
+                      "take balanced states");
+  }
+
+  /// `whole_` of this system, which was compiled from the graph.
+  void read_whole(const System& system, const SystemData& data, const Graph& graph) {
+    Coordinates c = coordinates(system, data);
+    setting_.note_structure(c.size());
+    join(c, data.graph());
+    if (c.size() > setting_.scene.whole_up_to) refuse_size(setting_, c.size());
+    whole_ = whole(system, c, positions_read(graph));
+  }
+
+  void join(Coordinates& c, const Graph& graph) {
     const Index before = c.size();
-    const TwinReduction twins = join_twins(c, setting_.data->graph());
+    const TwinReduction twins = join_twins(c, graph);
     if (twins.removed > 0)
       setting_.note("symmetry", before, c.size(),
                     fmt::format("{} move alike", fmt::join(twins.pairs, "; ")));

@@ -54,6 +54,7 @@ void add_coupled(ModalModel& result, const StateSpace& m, const std::vector<Inde
   const detail::RealModes modes = detail::real_modes(A, "second_order() or state_space()");
   const Index first = 2 * static_cast<Index>(result.A.size()), n = A.rows();
   result.A.insert(result.A.end(), modes.A.begin(), modes.A.end());
+  for (const double pole : modes.single) result.A.emplace_back(pole * Eigen::Matrix2d::Identity());
   result.B.middleRows(first, n) =
       MatrixXd(modes.T.partialPivLu().solve(MatrixXd(m.B(states, Eigen::all))));
   result.C.middleCols(first, n) = m.C(Eigen::all, states) * modes.T;
@@ -94,8 +95,10 @@ SecondOrderModel ReducedSystem::second_order() const {
                             full().stage().graph.name, data_->states->why),
                 "take state_space() or modal()");
   const detail::Small& m = data_->small;
+  const MatrixXd Z = damping(m);
   SecondOrderModel s{.M = MatrixXd::Identity(m.order(), m.order()),
-                     .D = damping(m),
+                     .D = (Z + Z.transpose()) / 2,
+                     .G = (Z - Z.transpose()) / 2,
                      .K = m.k.asDiagonal(),
                      .B = m.b,
                      .C = m.cq,
@@ -112,7 +115,8 @@ SecondOrderModel ReducedSystem::second_order() const {
 MatrixXcd SecondOrderModel::transfer(Complex s) const {
   const MatrixXcd c =
       s * s * C_accel.cast<Complex>() + s * C_rate.cast<Complex>() + C.cast<Complex>();
-  const MatrixXcd S = s * s * M.cast<Complex>() + s * D.cast<Complex>() + K.cast<Complex>();
+  MatrixXcd S = s * s * M.cast<Complex>() + s * D.cast<Complex>() + K.cast<Complex>();
+  if (G.size() > 0) S += s * G.cast<Complex>();
   if (S.rows() == 0) return direct.cast<Complex>();
   const auto solved = linalg::solve(S, B.cast<Complex>());
   if (!(solved.rcond > 0) || !solved.z.allFinite() ||
@@ -131,8 +135,12 @@ ModalModel ReducedSystem::modal() const {
   const detail::Small& m = data_->small;
   const StateSpace halves = by_halves(m);
   const Index r = m.order(), own = m.Z.size() ? m.own : r;
-  ModalModel result{
-      {}, MatrixXd(2 * r, m.b.cols()), MatrixXd(m.ca.rows(), 2 * r), halves.D, inputs(), outputs()};
+  ModalModel result{{},
+                    MatrixXd::Zero(2 * r, m.b.cols()),
+                    MatrixXd::Zero(m.ca.rows(), 2 * r),
+                    halves.D,
+                    inputs(),
+                    outputs()};
   for (Index j = 0; j < own; ++j) {
     const std::vector<Index> pair{j, r + j};
     result.A.emplace_back(halves.A(pair, pair));
@@ -140,9 +148,13 @@ ModalModel ReducedSystem::modal() const {
     result.C.middleCols<2>(2 * j) = halves.C(Eigen::all, pair);
   }
   std::vector<Index> rest;
-  for (Index j = own; j < r; ++j) rest.push_back(j);
+  for (Index j = own; j < r; ++j)
+    if (m.has_position(j)) rest.push_back(j);
   for (Index j = own; j < r; ++j) rest.push_back(r + j);
   if (!rest.empty()) add_coupled(result, halves, rest);
+  const auto states = 2 * static_cast<Index>(result.A.size());
+  result.B.conservativeResize(states, Eigen::NoChange);
+  result.C.conservativeResize(Eigen::NoChange, states);
   return result;
 }
 

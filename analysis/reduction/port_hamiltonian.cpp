@@ -17,8 +17,9 @@ namespace {
 /// with qdd = B u - D qd - K q. Of positions and rates they are as large as these.
 bool is_acceleration(const SecondOrderModel& m, Index output) {
   const Eigen::RowVectorXd a = m.C_accel.row(output);
+  const double momenta = m.G.size() > 0 ? (a * m.G).norm() : 0;
   return m.C.row(output).norm() <= linalg::kHalfDigits * (a * m.K).norm() &&
-         m.C_rate.row(output).norm() <= linalg::kHalfDigits * (a * m.D).norm();
+         m.C_rate.row(output).norm() <= linalg::kHalfDigits * ((a * m.D).norm() + momenta);
 }
 
 void require_accelerations(const SecondOrderModel& m) {
@@ -48,6 +49,7 @@ PortHamiltonian port_hamiltonian(const SecondOrderModel& model) {
   const Index n = model.M.rows();
   const MatrixXd mobility = inverse_of(model.M);
   PortHamiltonian s = detail::canonical((model.D + model.D.transpose()) / 2);
+  if (model.G.size() > 0) s.J.bottomRightCorner(n, n) = (model.G.transpose() - model.G) / 2;
   s.Q = MatrixXd::Zero(2 * n, 2 * n);
   s.Q.topLeftCorner(n, n) = model.K;
   s.Q.bottomRightCorner(n, n) = mobility;

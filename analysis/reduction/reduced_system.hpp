@@ -28,7 +28,8 @@ struct ErrorBound {
 
 /// One step of the reduction.
 struct ReductionStep {
-  std::string name;           ///< "structure", "bodies", "symmetry", "whole"; "kept", "balanced"
+  std::string name;           ///< "structure", "bodies", "symmetry", "rotors", "whole"; "kept",
+                              ///< "balanced"
   int before = 0, after = 0;  ///< second-order coordinates; of "kept" and "balanced": states
   double error = 0;           ///< its error, relative as in Scene; 0: exact
   std::string text;           ///< description
@@ -46,11 +47,13 @@ struct KeptMode {
   std::vector<std::pair<std::string, double>> blocks;
 };
 
-/// Coordinates are mass-normalised, q [kg^1/2 m] or [kg^1/2 m rad]: M is I, K [rad^2/s^2], D
-/// [rad/s]. M qdd + D qd + K q = B u, y = C q + C_rate qd + C_accel qdd + direct u, with M = I, D
-/// symmetric semidefinite (0 if undamped), K diagonal >= 0: stable if the structure is.
+/// Coordinates are mass-normalised, q [kg^1/2 m] or [kg^1/2 m rad]: M is I, K [rad^2/s^2], D and G
+/// [rad/s]. M qdd + (D + G) qd + K q = B u, y = C q + C_rate qd + C_accel qdd + direct u, with M =
+/// I, D symmetric semidefinite (0 if undamped), G = -G' of the rotors' momenta (0 without), K
+/// diagonal >= 0. The energy (qd' M qd + q' K q) / 2 decreases by qd' D qd, to which G does not
+/// contribute: stable if the structure is, whatever the momenta.
 struct SecondOrderModel {
-  Eigen::MatrixXd M, D, K;             ///< r x r
+  Eigen::MatrixXd M, D, G, K;          ///< r x r
   Eigen::MatrixXd B;                   ///< r x inputs
   Eigen::MatrixXd C, C_rate, C_accel;  ///< outputs x r
   Eigen::MatrixXd direct;              ///< outputs x inputs
@@ -60,9 +63,9 @@ struct SecondOrderModel {
 };
 
 /// A reduced structure, ReducedSystem::second_order(), as a port-Hamiltonian system with x = [q;
-/// p], p = M qd: Q = diag(K, M^-1), R = diag(0, D), G = [0; B], N = C_accel M^-1, P = direct. H is
-/// the energy of the kept modes, elastic and kinetic [J]; of a free structure without that of its
-/// rigid motion, to which they are orthogonal.
+/// p], p = M qd: Q = diag(K, M^-1), R = diag(0, D), G = [0; B], N = C_accel M^-1, P = direct; J has
+/// -G of the momenta from p to p. H is the energy of the kept modes, elastic and kinetic [J]; of a
+/// free structure without that of its rigid motion, to which they are orthogonal.
 ///
 /// Of ReducedSystem, Q and R are semidefinite and J is skew for every order, since it is a
 /// projection of the full structure: dH/dt <= (Q x)' G u, whatever modes are kept. If outputs are
@@ -152,8 +155,13 @@ std::string to_string(const ReducedSystem& system);
 /// chains. An Lti of uncoupled modal blocks of 2 x 2 with complex poles, [0 w; -w -2 xi w] or
 /// similar to it, is a structure if inputs move each block in one direction, as forces do.
 ///
-/// If the scene is no passive structure (controllers and filters in the loop, momenta of rotors,
-/// dashpots without springs; a note names the state), states replace M, D, K. Integrals, poles on
+/// Rotors: their momenta and the friction of their bearings are projected on both sides by the same
+/// modes and vectors of the structure at rest, as SecondOrderModel::G and D, at every wheel speed;
+/// rates that the momenta turn into one another (of a free hub, of its rotors) are all kept. A step
+/// names the points of the momenta.
+///
+/// If the scene is no passive structure (controllers and filters in the loop, dashpots without
+/// springs; a note names the state or the force), states replace M, D, K. Integrals, poles on
 /// the axis (undamped modes have no Gramian) and poles right of it are kept whole; the well-damped
 /// rest is balanced and reduced, by truncation or by singular perturbation, over the whole axis or
 /// with low-passes at the band's end, whichever needs the fewest states; a step contains the choice

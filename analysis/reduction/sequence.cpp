@@ -157,24 +157,71 @@ bool Sequence::extend(const WorstPair& worst) {
 /// The dropped mode of the band with the largest term in this error, if all of them explain at
 /// least this fraction of it.
 bool Sequence::keep_one(const WorstPair& worst, double least) {
-  const Complex s = samples_.s[worst.sample];
+  std::vector<Index> dropped;
+  for (Index j = 0; j < inside_; ++j)
+    if (!is_kept_[at(j)]) dropped.push_back(j);
+  if (dropped.empty()) return false;
+  const Eigen::VectorXcd terms =
+      whole_.loose_coupled ? coupled_terms(worst, dropped) : own_terms(worst, dropped);
   Complex sum = 0;
   Index best = -1;
   double largest = 0;
-  for (Index j = 0; j < inside_; ++j) {
-    if (is_kept_[at(j)]) continue;
-    const Complex c = s * (s * whole_.ca(worst.output, j) + whole_.cv(worst.output, j));
-    const double residual = below_[at(j)] ? whole_.ca(worst.output, j) : 0;  // its asymptote
-    const Complex term = (c / (s * (s + whole_.damping(j)) + whole_.lambda(j)) - residual) *
-                         whole_.b(j, worst.input);
-    sum += term;
-    if (std::abs(term) > largest) largest = std::abs(term), best = j;
+  for (Index i = 0; i < terms.size(); ++i) {
+    sum += terms(i);
+    if (std::abs(terms(i)) > largest) largest = std::abs(terms(i)), best = dropped[at(i)];
   }
   const double total = std::abs(error_[worst.sample](worst.output, worst.input));
   if (best < 0 || std::abs(sum) < least * total) return false;
   is_kept_[at(best)] = 1;
   kept_.push_back(best);
   return true;
+}
+
+Eigen::VectorXcd Sequence::own_terms(const WorstPair& worst,
+                                     const std::vector<Index>& modes) const {
+  const Complex s = samples_.s[worst.sample];
+  Eigen::VectorXcd terms(static_cast<Index>(modes.size()));
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    const Index j = modes[i];
+    const Complex c = s * (s * whole_.ca(worst.output, j) + whole_.cv(worst.output, j));
+    const double residual = below_[at(j)] ? whole_.ca(worst.output, j) : 0;  // its asymptote
+    terms(static_cast<Index>(i)) =
+        (c / (s * (s + whole_.damping(j)) + whole_.lambda(j)) - residual) *
+        whole_.b(j, worst.input);
+  }
+  return terms;
+}
+
+/// Momenta shift resonances by far more than their width: the modes' equations with those of the
+/// model's coordinates eliminated, a Schur complement.
+Eigen::VectorXcd Sequence::coupled_terms(const WorstPair& worst,
+                                         const std::vector<Index>& modes) const {
+  const Complex s = samples_.s[worst.sample];
+  const MatrixXd &V = model_.V, Z = whole_.Z(modes, Eigen::all);
+  MatrixXcd S = s * Z(Eigen::all, modes), to = s * (Z * V),
+            from = s * (V.transpose() * whole_.Z(Eigen::all, modes));
+  S.diagonal().array() += s * s + whole_.lambda(modes).array();
+  Eigen::VectorXcd force = whole_.b(modes, worst.input);
+  Eigen::RowVectorXcd c = s * (s * whole_.ca(worst.output, modes) + whole_.cv(worst.output, modes));
+  if (V.cols() > 0) {
+    MatrixXcd own = s * model_.Z;
+    own.diagonal().array() += s * s + model_.k.array();
+    const Eigen::PartialPivLU<MatrixXcd> lu(own);
+    const MatrixXcd moved = lu.solve(from);
+    const Eigen::RowVectorXcd read =
+        s * (s * model_.ca.row(worst.output) + model_.cv.row(worst.output)) +
+        model_.cq.row(worst.output);
+    S -= to * moved;
+    force -= to * lu.solve(MatrixXcd(model_.b.col(worst.input).cast<Complex>()));
+    c -= read * moved;
+  }
+  const Eigen::VectorXcd added = S.partialPivLu().solve(force);
+  Eigen::VectorXcd terms = c.transpose().cwiseProduct(added);
+  for (std::size_t i = 0; i < modes.size(); ++i)
+    if (below_[at(modes[i])])
+      terms(static_cast<Index>(i)) -=
+          whole_.ca(worst.output, modes[i]) * whole_.b(modes[i], worst.input);
+  return terms;
 }
 
 bool Sequence::add(VectorXd column) {

@@ -73,6 +73,10 @@ class Sequence {
   Small small(const std::vector<Eigen::Index>& kept, const Eigen::MatrixXd& W) const;
   bool extend(const WorstPair& worst);
   bool keep_one(const WorstPair& worst, double least);
+  /// Terms of dropped modes in this error: of each alone, or, coupled, of all added together.
+  Eigen::VectorXcd own_terms(const WorstPair& worst, const std::vector<Eigen::Index>& modes) const;
+  Eigen::VectorXcd coupled_terms(const WorstPair& worst,
+                                 const std::vector<Eigen::Index>& modes) const;
   bool add_columns(const WorstPair& worst);
   bool add(Eigen::VectorXd column);
   bool add_pending();

@@ -27,20 +27,39 @@ MatrixXcd solve(const Small& m, Complex s, const MatrixXcd& f) {
   return x;
 }
 
+/// The coupled coordinates in first order: positions, as far as they are states, then all rates.
+struct FirstOrder {
+  std::vector<Index> positions;  ///< among the coupled coordinates
+  MatrixXd A;
+};
+
+FirstOrder first_order(const Small& m) {
+  const Index rest = m.order() - m.own;
+  FirstOrder f;
+  for (Index j = 0; j < rest; ++j)
+    if (m.has_position(m.own + j)) f.positions.push_back(j);
+  const auto n = static_cast<Index>(f.positions.size());
+  f.A = MatrixXd::Zero(n + rest, n + rest);
+  for (Index i = 0; i < n; ++i) {
+    const Index j = f.positions[static_cast<std::size_t>(i)];
+    f.A(i, n + j) = 1;
+    f.A(n + j, i) = -m.k(m.own + j);
+  }
+  f.A.bottomRightCorner(rest, rest) = -m.Z.bottomRightCorner(rest, rest);
+  return f;
+}
+
 /// The coupled coordinates as a sum over poles.
 void find_poles(Small& m) {
   const Index rest = m.Z.size() ? m.order() - m.own : 0;
   if (rest == 0) return;
-  MatrixXd A = MatrixXd::Zero(2 * rest, 2 * rest);
-  A.topRightCorner(rest, rest).setIdentity();
-  A.bottomLeftCorner(rest, rest) = (-m.k.tail(rest)).asDiagonal();
-  A.bottomRightCorner(rest, rest) = -m.Z.bottomRightCorner(rest, rest);
-  const linalg::Eigensystem e = linalg::eigensystem(A);
+  const FirstOrder f = first_order(m);
+  const linalg::Eigensystem e = linalg::eigensystem(f.A);
   if (!(e.rcond_V > kDefective)) return;
-  const MatrixXd ca = m.ca.rightCols(rest), b = m.b.bottomRows(rest);
-  MatrixXd C(ca.rows(), 2 * rest);
-  C.leftCols(rest) = m.cq.rightCols(rest) - ca * m.k.tail(rest).asDiagonal();
-  C.rightCols(rest) = m.cv.rightCols(rest) - ca * m.Z.bottomRightCorner(rest, rest);
+  const MatrixXd ca = m.ca.rightCols(rest), b = m.b.bottomRows(rest),
+                 read = m.cq.rightCols(rest) - ca * m.k.tail(rest).asDiagonal();
+  MatrixXd C(ca.rows(), f.A.cols());
+  C << read(Eigen::all, f.positions), m.cv.rightCols(rest) - ca * m.Z.bottomRightCorner(rest, rest);
   m.pole = e.values;
   m.left = C.cast<Complex>() * e.V;
   m.right = e.W.rightCols(rest) * b.cast<Complex>();
@@ -84,12 +103,10 @@ std::vector<Complex> Small::poles() const {
     if (root.imag() == 0) result.push_back(-half - root);
   }
   if (rest == 0) return result;
-  MatrixXd A = MatrixXd::Zero(2 * rest, 2 * rest);
-  A.topRightCorner(rest, rest).setIdentity();
-  A.bottomLeftCorner(rest, rest) = (-k.tail(rest)).asDiagonal();
-  A.bottomRightCorner(rest, rest) = -Z.bottomRightCorner(rest, rest);
-  for (const Complex& p : linalg::eigenvalues(A))
-    if (p.imag() >= 0) result.push_back(p);
+  const FirstOrder f = first_order(*this);
+  const auto at_zero = std::count_if(f.positions.begin(), f.positions.end(),
+                                     [&](Index j) { return k(own + j) == 0; });
+  for (const Complex& p : upper_poles(f.A, resting + at_zero)) result.push_back(p);
   return result;
 }
 
@@ -119,7 +136,8 @@ Small project(const Whole& w, const std::vector<Index>& of_band, const MatrixXd&
     m.V.block(0, own, n, W.cols()) = W * modes.V;
     m.k.tail(W.cols()) = modes.lambda;
   }
-  m.own = w.proportional ? own : w.loose;
+  m.own = w.proportional ? own : w.loose_coupled ? 0 : w.loose;
+  m.resting = w.resting;
   if (w.Z.size() > 0)
     m.Z = w.proportional ? MatrixXd(m.V.transpose() * w.Z.diagonal().asDiagonal() * m.V)
                          : MatrixXd(m.V.transpose() * w.Z * m.V);

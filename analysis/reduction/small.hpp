@@ -10,11 +10,12 @@ namespace titop::detail {
 constexpr double kDefective = 1e-5;
 
 /// q'' + Z q' + k q = b u, y = D0 u + ca q'' + cv q' + cq q. The first `own` coordinates,
-/// those without stiffness among them, are decoupled from all others.
+/// those without stiffness among them unless momenta couple these, are decoupled from all others.
 struct Small {
   Eigen::VectorXd k;  ///< r, ascending; 0 for motions without stiffness
   Eigen::Index own = 0;
-  Eigen::MatrixXd Z;           ///< r x r, or 0 x 0
+  Eigen::MatrixXd Z;           ///< r x r, or 0 x 0; its antisymmetric part is that of momenta
+  Eigen::Index resting = 0;    ///< poles at 0 among the coupled rates: Whole::resting
   Eigen::MatrixXd b;           ///< r x inputs
   Eigen::MatrixXd ca, cv, cq;  ///< outputs x r
   Eigen::MatrixXd D0;          ///< outputs x inputs
@@ -45,7 +46,7 @@ SymmetricModes ritz(const Eigen::VectorXd& lambda, const Eigen::MatrixXd& W);
 
 /// The whole in the span of all motions without stiffness, the modes `kept` and the columns W
 /// (elastic modes x columns, orthonormal, 0 in the rows of `kept`): Galerkin, so that M = I, k >= 0
-/// and Z >= 0. Static gains stay those of the whole.
+/// and Z + Z' >= 0. Static gains stay those of the whole.
 Small project(const Whole& whole, const std::vector<Eigen::Index>& kept, const Eigen::MatrixXd& W);
 
 }  // namespace titop::detail

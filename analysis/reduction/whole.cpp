@@ -216,14 +216,24 @@ Whole whole(const System& system, const Coordinates& c, std::vector<char> is_pos
 
 void couple(Whole& w) {
   if (w.proportional) return;
-  const Index m = w.elastic();
+  const Index m = w.elastic(), n = w.loose_coupled ? w.order() : m;
   const VectorXd omega = w.lambda.head(m).cwiseSqrt();
-  MatrixXd A = MatrixXd::Zero(2 * m, 2 * m);  // positions times omega: entries of one size
-  A.topRightCorner(m, m) = omega.asDiagonal();
-  A.bottomLeftCorner(m, m) = (-omega).asDiagonal();
-  A.bottomRightCorner(m, m) = -w.Z.topLeftCorner(m, m);
-  for (const std::complex<double>& p : linalg::eigenvalues(A))
-    if (p.imag() >= 0) w.poles.push_back(p);
+  MatrixXd A = MatrixXd::Zero(m + n, m + n);  // positions times omega: entries of one size
+  A.topRightCorner(m, n).leftCols(m) = omega.asDiagonal();
+  A.bottomLeftCorner(n, m).topRows(m) = (-omega).asDiagonal();
+  A.bottomRightCorner(n, n) = -w.Z.topLeftCorner(n, n);
+  w.poles = upper_poles(A, w.resting);
+}
+
+std::vector<std::complex<double>> upper_poles(const MatrixXd& A, Index zeros) {
+  Eigen::VectorXcd all = linalg::eigenvalues(A);
+  std::stable_sort(all.begin(), all.end(),
+                   [](const auto& p, const auto& q) { return std::abs(p) < std::abs(q); });
+  all.head(zeros).setZero();
+  std::vector<std::complex<double>> result;
+  for (const std::complex<double>& p : all)
+    if (p.imag() >= 0) result.push_back(p);
+  return result;
 }
 
 MatrixXd participation(const Whole& w, const MatrixXd& V) {

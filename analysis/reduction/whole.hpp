@@ -21,8 +21,11 @@ struct Whole {
   Eigen::MatrixXd b;       ///< n x inputs
   Eigen::MatrixXd ca, cv, cq;     ///< outputs x n
   Eigen::MatrixXd D0;             ///< outputs x inputs
-  Eigen::MatrixXd Z;              ///< n x n, symmetric, semidefinite; 0 x 0 if nothing is damped
+  Eigen::MatrixXd Z;              ///< n x n, symmetric part semidefinite; 0 x 0: no damping
   bool proportional = true;       ///< Z is diagonal, to rounding
+  bool loose_coupled = false;     ///< Z has rotors' momenta (it is not symmetric then) and their
+                                  ///< friction, also on motions without stiffness
+  Eigen::Index resting = 0;       ///< of these: independent rates that stay as they are, poles at 0
   Eigen::Index far = 0;           ///< modes that rounding hides: in D0 only
   std::vector<char> is_position;  ///< per output
   std::vector<std::complex<double>> poles;  ///< of coupled modes, by `couple`; upper half plane
@@ -46,8 +49,12 @@ struct Whole {
 /// Throws the errors of `coordinates`. O(n^3).
 Whole whole(const System& system, const Coordinates& c, std::vector<char> is_position);
 
-/// Finds `poles` if damping couples the modes: one eigenproblem of twice their number, O(8 n^3).
+/// Finds `poles` if damping or momenta couple the modes: one eigenproblem of twice their number,
+/// O(8 n^3).
 void couple(Whole& whole);
+
+/// Eigenvalues of A with Im >= 0; the `zeros` of smallest modulus are 0 but for rounding.
+std::vector<std::complex<double>> upper_poles(const Eigen::MatrixXd& A, Eigen::Index zeros);
 
 /// Blocks x columns: each block's part of the elastic energy of the motions V (modes x columns), of
 /// sum 1; motions without stiffness belong to their own block. O(n^2 columns).

@@ -64,10 +64,11 @@ void bind_results(py::module_& m) {
       .def_readonly("blocks", &KeptMode::blocks,
                     "[(block, share of its elastic energy)], largest first, down to 5 %.");
   py::class_<SecondOrderModel>(m, "SecondOrderModel",
-                               "M qdd + D qd + K q = B u, y = C q + C_rate qd + C_accel qdd + "
-                               "direct u, M = I, K diagonal.")
+                               "M qdd + (D + G) qd + K q = B u, y = C q + C_rate qd + C_accel "
+                               "qdd + direct u, M = I, K diagonal, G skew.")
       .def_readonly("M", &SecondOrderModel::M, "r x r, the identity.")
       .def_readonly("D", &SecondOrderModel::D, "r x r [rad/s].")
+      .def_readonly("G", &SecondOrderModel::G, "r x r, of rotors' momenta, skew [rad/s].")
       .def_readonly("K", &SecondOrderModel::K, "r x r, diagonal [rad^2/s^2].")
       .def_readonly("B", &SecondOrderModel::B, "r x inputs.")
       .def_readonly("C", &SecondOrderModel::C, "outputs x r, of q.")
