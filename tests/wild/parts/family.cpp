@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <map>
 
@@ -15,6 +16,16 @@ namespace {
 
 constexpr int kFamilies = 10;
 constexpr int kEveryOther = 10;  ///< one of so many scenes is simulated as well
+/// Shares of a family's scenes. Of 7,000 scenes three were not judged, all of them beams whose kept
+/// modes are not defined; three were answered wrong with a warning.
+constexpr double kNotJudged = 0.01;
+constexpr double kWrongButSaid = 0.01;
+
+/// More than this share of the scenes, and three deviations of such a number.
+bool above(double share, int number, int count) {
+  const double expected = share * count;
+  return number > expected + 3 * std::sqrt(expected);
+}
 
 int number(const char* variable, int otherwise) {
   const char* text = std::getenv(variable);
@@ -60,21 +71,19 @@ std::string smallest(const Family& family, int seed) {
 
 void demand_right(const Family& family) {
   const int count = std::max(1, number("TITOP_WILD_SCENES", 500) / kFamilies);
-  std::map<std::string, int> counts;
+  std::map<Verdict, int> counts;
   std::map<std::string, int> refusals;
   std::vector<int> wrong, refused;
-  int right = 0;
   for (int seed = 0; seed < count; ++seed) {
     const Judgement j = judge_seed(scene_of(family, seed), seed);
-    ++counts[std::string(to_string(j.verdict))];
-    right += j.verdict == Verdict::right;
+    ++counts[j.verdict];
     if (j.verdict == Verdict::refused_rightly || j.verdict == Verdict::refused_falsely)
       ++refusals[j.text.substr(0, j.text.find(':'))];
     if (j.verdict == Verdict::wrong_in_silence) wrong.push_back(seed);
     if (j.verdict == Verdict::refused_falsely) refused.push_back(seed);
   }
   std::string summary = fmt::format("{}: {} scenes", family.name, count);
-  for (const auto& [verdict, n] : counts) summary += fmt::format(", {} {}", n, verdict);
+  for (const auto& [verdict, n] : counts) summary += fmt::format(", {} {}", n, to_string(verdict));
   for (const auto& [code, n] : refusals) summary += fmt::format(", {} by {}", n, code);
   MESSAGE(summary);
   const auto show = [&](const std::string& text, const std::vector<int>& seeds) {
@@ -87,7 +96,9 @@ void demand_right(const Family& family) {
   if (too_many) show("refused falsely:", refused);
   CHECK(wrong.empty());
   CHECK_FALSE(too_many);
-  CHECK(2 * right >= count);
+  CHECK_FALSE(above(kNotJudged, counts[Verdict::not_judged], count));
+  CHECK_FALSE(above(kWrongButSaid, counts[Verdict::wrong_but_said], count));
+  CHECK(2 * counts[Verdict::right] >= count);
 }
 
 }  // namespace wild

@@ -15,8 +15,8 @@ struct Family {
 };
 
 /// Judges this family's share of the 500 scenes (of TITOP_WILD_SCENES, if that is set): no wrong
-/// answer in silence, no more false refusals than the family allows. The first failing scene is
-/// shrunk and printed.
+/// answer in silence, no more false refusals than the family allows, one scene of a hundred wrong
+/// with a warning, one without a verdict. The first failing scene is shrunk and printed.
 void demand_right(const Family& family);
 
 }  // namespace wild

@@ -92,13 +92,15 @@ Blocks blocks_of(const Scene& scene, const std::vector<MatrixXcd>& exact, const 
   return b;
 }
 
-/// Warnings of the default certificate and the log that would make a user doubt.
+/// Warnings of the default certificate and the log that would make a user doubt; those of the data
+/// (a soft material) say nothing of digits.
 std::string said(const System& system) {
   std::string text;
   // Apply column by column is a model in double, too.
   for (const auto& notes : {system.notes(), system.dense_notes()})
     for (const titop::Note& note : notes)
-      if (note.kind == titop::Note::Kind::warning) text += note.pass + ": " + note.text + "; ";
+      if (note.kind == titop::Note::Kind::warning && note.pass != "check")
+        text += note.pass + ": " + note.text + "; ";
   const titop::Certificate c = system.dense_certificate();
   if (!(c.residual <= 1e-8)) text += fmt::format("residual {:.1e}; ", c.residual);
   if (!(c.dense_against_factors <= 1e-8))
@@ -254,7 +256,8 @@ struct JudgedScene {
 };
 
 /// Allowed errors: the change of the transfer by the digits of the data. False if they are as large
-/// as the transfer itself.
+/// as the transfer itself. One that is 0 everywhere, as of a rigid body on the ground, is compared
+/// with 1: masses and lengths are about 1.
 bool find_allowed(JudgedScene& c, unsigned seed, Judgement& j) {
   const auto rows = output_blocks(c.scene), cols = input_blocks(c.scene);
   const Truth off = truth(disturbed(c.scene, kData, seed + 1), j.s, c.digits);
@@ -263,8 +266,9 @@ bool find_allowed(JudgedScene& c, unsigned seed, Judgement& j) {
                                                   static_cast<Index>(cols.size()), HUGE_VAL)
                              : largest(off.H, &c.exact.H, rows, cols);
   Blocks& b = c.blocks = blocks_of(c.scene, c.exact.H, moved);
-  j.text = fmt::format("allowed {:.1e} of the largest", b.allowed.maxCoeff() / b.size.maxCoeff());
-  return (b.allowed.array() <= 1e-4 * b.size.maxCoeff()).all() && b.size.maxCoeff() > 0;
+  const double size = b.size.maxCoeff();
+  j.text = fmt::format("allowed {:.1e} beside {:.1e}", b.allowed.maxCoeff(), size);
+  return (b.allowed.array() <= 1e-4 * (size < kNothing ? 1 : size)).all();
 }
 
 std::vector<Road> roads_of(const System& system, const std::vector<Complex>& points,
