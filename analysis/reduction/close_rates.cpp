@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <set>
 #include <titop/analysis/reduction/rate_feedback.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/index.hpp>
@@ -13,9 +16,10 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using linalg::at;
 
-[[noreturn]] void refuse_asymmetry(const char* message) {
-  throw NoStructure(Code::bad_value, message,
-                    "look for blocks of the diagram whose data are not symmetric");
+[[noreturn]] void refuse_asymmetry(const std::string& what) {
+  throw NoStructure(
+      Code::bad_value, what + ": no motion of a structure",
+      "look for a block there whose data are not symmetric, or whose motion has no mass");
 }
 
 /// The modal vectors of w and of z; equal if motions are mass-normalised.
@@ -24,19 +28,25 @@ struct Ports {
 };
 
 /// A rate that is rounding beside the others, as at a point that is held, counts as 0.
-void require_reciprocal(const MatrixXd& b, const MatrixXd& c) {
+void require_reciprocal(const MatrixXd& b, const MatrixXd& c,
+                        const std::vector<std::string>& ports) {
   const Eigen::RowVectorXd size = b.colwise().norm() + c.colwise().norm();
   const double least = size.size() > 0 ? linalg::kAxisRounding * size.maxCoeff() : 0;
   for (Index j = 0; j < b.cols(); ++j)
     if (!((b.col(j) - c.col(j)).norm() <= std::max(kSymmetric * size(j), least)))
-      refuse_asymmetry("torques of rotors and the rates that they follow are not reciprocal");
+      refuse_asymmetry(
+          fmt::format("a force at {} and the rate there are not reciprocal", ports[at(j)]));
 }
 
-/// Mass matrix's inverse X of the motions without stiffness, X c = b, as far as z sees them; I
-/// across.
+/// Mass matrix's inverse X of the motions without stiffness: X c = b on the span of c, the identity
+/// on its complement. Rates that are rounding beside the others do not count. Empty if there are
+/// more such motions than coordinates, since forces and rates are not reciprocal.
 MatrixXd mobility(const MatrixXd& b, const MatrixXd& c) {
   const MatrixXd S = (c.transpose() * b + b.transpose() * c) / 2;
+  const Eigen::RowVectorXd size = b.colwise().norm() + c.colwise().norm();
+  const double least = size.size() > 0 ? linalg::kAxisRounding * size.maxCoeff() : 0;
   VectorXd d = S.diagonal().cwiseMax(0).cwiseSqrt();
+  d = (size.transpose().array() > least).select(d, 0);
   d = (d.array() > 0).select(d.cwiseInverse(), 0);
   const SymmetricModes m = eigh(d.asDiagonal() * S * d.asDiagonal());
   MatrixXd X = MatrixXd::Zero(b.rows(), b.rows());
@@ -49,17 +59,21 @@ MatrixXd mobility(const MatrixXd& b, const MatrixXd& c) {
     seen.rightCols<1>() = c * v;
   }
   if (seen.cols() == 0) return MatrixXd::Identity(c.rows(), c.rows());
+  if (seen.cols() > c.rows()) return {};
   const Eigen::ColPivHouseholderQR<MatrixXd> qr(seen);
   const MatrixXd across = MatrixXd(qr.householderQ()).rightCols(c.rows() - seen.cols());
   return X + across * across.transpose();
 }
 
 /// Motions without stiffness x = T y, T T' = X: y are mass-normalised.
-void normalise(Whole& w, Ports& p) {
+void normalise(Whole& w, Ports& p, const std::vector<std::string>& ports) {
   const Index loose = w.loose;
   if (loose == 0) return;
-  const Eigen::LLT<MatrixXd> factors(mobility(p.b.bottomRows(loose), p.c.bottomRows(loose)));
-  if (factors.info() != Eigen::Success) refuse_asymmetry("rotors move without inertia");
+  const MatrixXd X = mobility(p.b.bottomRows(loose), p.c.bottomRows(loose));
+  const Eigen::LLT<MatrixXd> factors(X);
+  if (X.size() == 0 || factors.info() != Eigen::Success)
+    refuse_asymmetry(fmt::format("rates at {} do not determine their inertia",
+                                 fmt::join(std::set(ports.begin(), ports.end()), ", ")));
   const MatrixXd T = factors.matrixL();
   w.b.bottomRows(loose) = factors.matrixL().solve(MatrixXd(w.b.bottomRows(loose)));
   for (MatrixXd* m : {&w.ca, &w.cv, &w.cq}) m->rightCols(loose) = m->rightCols(loose) * T;
@@ -97,8 +111,8 @@ Index resting(const Whole& w) {
 void close(Whole& w, const RateFeedback& f) {
   const Index z = f.F.rows(), inputs = w.b.cols() - z, outputs = w.cv.rows() - z;
   Ports p{w.b.rightCols(z), w.cv.bottomRows(z).transpose()};
-  normalise(w, p);
-  require_reciprocal(p.b, p.c);
+  normalise(w, p, f.ports);
+  require_reciprocal(p.b, p.c, f.ports);
   const MatrixXd P = (p.b + p.c) / 2;
   MatrixXd D_w = w.D0.topRightCorner(outputs, z);
   for (MatrixXd* m : {&w.ca, &w.cv, &w.cq}) m->conservativeResize(outputs, Eigen::NoChange);

@@ -14,8 +14,9 @@ namespace titop::detail {
 /// the diagram as it was has w = -F z.
 struct RateFeedback {
   Graph graph;
-  Eigen::MatrixXd F;    ///< z x z: symmetric part semidefinite (dampers), the rest gyroscopic
-  std::string momenta;  ///< "40 N m s at w1.parent, ...", for the user; empty: all are 0
+  Eigen::MatrixXd F;  ///< z x z: symmetric part semidefinite (dampers), the rest gyroscopic
+  std::vector<std::string> ports;  ///< of every z: "w1.parent"
+  std::string momenta;             ///< "40 N m s at w1.parent, ...", for the user; empty: all are 0
 };
 
 /// None for a diagram without rotors or momenta, or without forces that follow rates. Throws
@@ -26,7 +27,7 @@ std::optional<RateFeedback> rate_feedback(const Graph& graph, ParameterValues va
 /// The whole of this diagram with its rates fed back: Z + P F P', P the modal vectors of w and z,
 /// which are one by reciprocity; motions without stiffness become mass-normalised first. Outputs
 /// that accelerate with them are written so. Without the additional inputs and outputs. Throws
-/// NoStructure if w and z are not reciprocal to 1e-7. O(n^2 z).
+/// NoStructure, with the port, if w and z are not reciprocal to 1e-7. O(n^2 z).
 void close(Whole& whole, const RateFeedback& feedback);
 
 }  // namespace titop::detail
