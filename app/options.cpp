@@ -141,7 +141,8 @@ constexpr OptionRow kOptions[] = {
      read_seconds<&Arguments::step>},
     {"--record", "FILE.csv",
      "simulate: inputs over time: a column time, in seconds, and\n"
-     "inputs by name; linear in between, jumps are two equal times",
+     "at least one input by name, the others are 0; linear in\n"
+     "between, jumps are two equal times",
      read_word<&Arguments::record>},
     {"--unit-step", "INPUT", "simulate: this input is 1, the others are 0",
      read_word<&Arguments::unit_step>},

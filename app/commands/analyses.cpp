@@ -44,6 +44,10 @@ Excitation recorded_inputs(const System& system, const std::string& file) {
     throw Error(Code::bad_file,
                 fmt::format("{}: the first column is {}", file, table.names.front()),
                 "call the first column time; it has seconds, ascending");
+  if (table.names.size() == 1 && !system.inputs().empty())
+    throw Error(Code::bad_file, fmt::format("{}: no column but {}", file, table.names.front()),
+                fmt::format("add a column for each input that is not 0: the inputs are {}",
+                            fmt::join(system.inputs(), ", ")));
   const auto columns = static_cast<Eigen::Index>(table.rows.size());
   Eigen::MatrixXd u = Eigen::MatrixXd::Zero(std::ssize(system.inputs()), columns);
   std::vector<double> times;

@@ -141,6 +141,19 @@ TEST_CASE("simulate: a step and a record of the force, by hand") {
   for (const auto& row : rows) CHECK(near(row[1], (2 * row[0] - std::sin(2 * row[0])) / 8, 10));
 }
 
+TEST_CASE("simulate: a record of the time alone, if the diagram has no inputs") {
+  const Shell shell;
+  Diagram d{"free"};
+  auto z = d.add("z", SpringMass{.mass = 2, .stiffness = 8});
+  ground(z);
+  z.child.force = 0;
+  d.output("x") = z.position;
+  write_diagram(d, shell.folder.path / "free.json");
+  shell.folder.write("time.csv", "time\n0\n2\n");
+  CHECK(shell.titop("simulate free.json x.csv --record time.csv --step 1 --until 2").code == 0);
+  for (const auto& row : shell.numbers("x.csv")) CHECK(row[1] == 0);
+}
+
 TEST_CASE("margins: of K / (s (s + 1)^2), whose gain margin is 2 / K at 1 rad/s") {
   const Shell shell;
   Run r = shell.titop("margins loop.json");
@@ -212,6 +225,10 @@ TEST_CASE("tables and options that do not fit are refused") {
   CHECK(
       has_names(shell.titop("simulate mass.json o.csv --record no_time.csv --step 1 --until 2").err,
                 {"bad-file", "no_time.csv", "time"}));
+  shell.folder.write("only_time.csv", "time\n0\n2\n");
+  r = shell.titop("simulate mass.json o.csv --record only_time.csv --step 1 --until 2");
+  CHECK(r.code == 1);
+  CHECK(has_names(r.err, {"bad-file", "only_time.csv", "u"}));
   for (const char* words :
        {"sweep mass.json points.csv", "sweep mass.json points.csv out.txt",
         "sweep mass.json points.csv points.csv", "sweep mass.json mass.json out.csv",
