@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <titop/emit/text/csv.hpp>
 
 #include "options.hpp"
 
@@ -74,15 +75,10 @@ std::string usage() {
 }
 
 std::vector<std::string> separated(const std::string& list) {
-  std::vector<std::string> words;
-  for (std::size_t at = 0; at < list.size();) {
-    const std::size_t end = std::min(list.find(',', at), list.size());
-    std::string word = list.substr(at, end - at);
-    word.erase(0, std::min(word.find_first_not_of(' '), word.size()));
-    word.erase(word.find_last_not_of(' ') + 1);
-    words.push_back(std::move(word));
-    at = end + 1;
-  }
+  if (std::ranges::count(list, '"') % 2 != 0)
+    throw Misuse{fmt::format("a quote is not closed in {}", list)};
+  std::vector<std::string> words = emit::csv_fields(list);
+  if (words.back().empty()) words.pop_back();
   return words;
 }
 

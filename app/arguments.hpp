@@ -42,7 +42,8 @@ struct Misuse {
 /// there twice, lacks a value or has a wrong one.
 Arguments parse(const std::vector<std::string>& all);
 
-/// The words of a list between commas.
+/// The words of a list between commas, as fields of CSV files: a word with a comma is in quotation
+/// marks.
 std::vector<std::string> separated(const std::string& list);
 
 /// The text of titop --help, without that of `generate`.

@@ -129,9 +129,13 @@ constexpr OptionRow kOptions[] = {
      read_count<&Arguments::modes>},
     {"--xi", "RATIO", "import: damping ratio of all modes", read_number<&Arguments::xi>},
     {"--band", "LOW HIGH", "report: of the frequency responses, Hz; reduce", read_band},
-    {"--inputs", "NAME,NAME", "reduce: inputs that the model has; all if left out",
+    {"--inputs", "NAME,NAME",
+     "reduce: inputs that the model has; all if left out;\n"
+     "NAME has quotation marks if it has a comma: '\"a,b\",c'",
      read_word<&Arguments::inputs>},
-    {"--outputs", "NAME,NAME", "reduce: outputs that the model has; all if left out",
+    {"--outputs", "NAME,NAME",
+     "reduce: outputs that the model has; all if left out;\n"
+     "NAME has quotation marks if it has a comma: '\"a,b\",c'",
      read_word<&Arguments::outputs>},
     {"--accuracy", "ERROR", "reduce: relative to the peaks, 1e-3 if left out",
      read_number<&Arguments::accuracy>},

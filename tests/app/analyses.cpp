@@ -196,6 +196,27 @@ TEST_CASE("reduce: the model, its bound and generated code") {
   CHECK(has_names(r.err, {"unknown-name", "force", "u"}));
 }
 
+TEST_CASE("reduce: names with commas and quotation marks, as in CSV files") {
+  const Shell shell;
+  Diagram d{"names"};
+  auto z = d.add("z", SpringMass{.mass = 2, .stiffness = 8, .damping = 0.4});
+  ground(z);
+  z.child.force += d.input("a,b") + d.input("u") + d.input("c");
+  d.output("x, \"y\"") = z.position;
+  d.output("v") = z.child.rate;
+  write_diagram(d, shell.folder.path / "names.json");
+  const Scene scene{.inputs = {"a,b", "u"}, .outputs = {"x, \"y\""}, .band_hz = {0, 2}};
+  const std::string expected =
+      to_string(compile(read_diagram(shell.folder.path / "names.json"), scene));
+  const Run r = shell.titop(R"(reduce names.json small.m --band 0 2 --inputs '"a,b", u' )"
+                            R"(--outputs '"x, ""y"""')");
+  CHECK(r.code == 0);
+  CHECK(r.out == expected);
+  const Run without = shell.titop("reduce names.json small.m --band 0 2 --inputs a,b");
+  CHECK(without.code == 1);
+  CHECK(has_names(without.err, {"unknown-name", "a,b"}));
+}
+
 TEST_CASE("--set: the value of a parameter in every command; --version") {
   const Shell shell;
   Diagram d = read_diagram(shell.folder.path / "mass.json");
