@@ -6,6 +6,7 @@
 #include <span>
 #include <titop/compiler/diagram/text.hpp>
 #include <titop/emit/files/files.hpp>
+#include <titop/emit/text/one_line.hpp>
 #include <titop/emit/text/write_file.hpp>
 #include <titop/graph/error.hpp>
 
@@ -66,9 +67,10 @@ std::string matrix(const std::string& name, const Eigen::MatrixXd& M) {
                   static_cast<std::size_t>(M.cols()), element(kReal, raw(entries)));
 }
 
-/// Bytes that are no UTF-8, and control characters, become U+FFFD. A path converts between texts.
+/// Control characters become blanks, as in write_matlab, and bytes that are no UTF-8 U+FFFD. A path
+/// converts between texts.
 std::u16string utf16(const std::string& text) {
-  const std::string clean = diagram::clean(text);
+  const std::string clean = diagram::clean(emit::on_one_line(text));
   return std::filesystem::path(std::u8string(clean.begin(), clean.end())).u16string();
 }
 

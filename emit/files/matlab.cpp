@@ -3,6 +3,7 @@
 #include <titop/emit/files/files.hpp>
 #include <titop/emit/files/lft_files.hpp>
 #include <titop/emit/text/identifier.hpp>
+#include <titop/emit/text/one_line.hpp>
 #include <titop/emit/text/write_file.hpp>
 #include <titop/graph/error.hpp>
 
@@ -10,17 +11,10 @@ namespace titop {
 
 namespace {
 
-/// Control characters are blanks, since a line or the file ends at some of them.
-std::string on_one_line(std::string text) {
-  for (char& c : text)
-    if (const auto byte = static_cast<unsigned char>(c); byte < 0x20 || byte == 0x7f) c = ' ';
-  return text;
-}
-
 /// Single quotes: no escapes are read in them by either program.
 std::string quoted(const std::string& name) {
   std::string text = "'";
-  for (const char c : on_one_line(name)) {
+  for (const char c : emit::on_one_line(name)) {
     if (c == '\'') text += '\'';
     text += c;
   }
@@ -66,7 +60,7 @@ void write(const StateSpace& model, const std::vector<std::string>& warnings,
       "function m = {} ()\n"
       "  % Written by titop: xdot = A x + B u, y = C x + D u, with names.\n",
       function_of(file));
-  for (const std::string& text : warnings) head += "  % Warning: " + on_one_line(text) + "\n";
+  for (const std::string& text : warnings) head += "  % Warning: " + emit::on_one_line(text) + "\n";
   emit::write_file(file, head + fields(model) + "end\n");
 }
 

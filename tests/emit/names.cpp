@@ -1,6 +1,7 @@
 // Names of any kind in the files for Python and Octave: both can read them.
 #include <doctest/doctest.h>
 
+#include <cstring>
 #include <titop/compiler/diagram/text.hpp>
 #include <titop/titop.hpp>
 
@@ -46,6 +47,17 @@ TEST_CASE("a Python module is UTF-8 throughout, whatever its names are made of")
   CHECK(has(text, R"("cut \xe6\x9c",)"));
   CHECK(has(text, R"("\"\\\x0a",)"));
   CHECK(has(text, R"("a\x00b",)"));
+}
+
+TEST_CASE("a MAT-file has blanks for control characters, and U+FFFD for bytes that are no UTF-8") {
+  const Folder folder;
+  write_mat(model({"c\td", "e\r\n\x7F", "f\xFF"}), folder.path / "m.mat");
+  const std::string file = folder.read("m.mat");
+  for (const std::u16string text : {u"c d", u"e   ", u"f\uFFFD"}) {
+    std::string bytes(2 * text.size(), ' ');
+    std::memcpy(bytes.data(), text.data(), bytes.size());
+    CHECK(has(file, bytes));
+  }
 }
 
 TEST_CASE("a MATLAB function has no control characters but its own line ends") {
