@@ -101,8 +101,12 @@ void bind_rotation(py::module_& m) {
       .def_static("about", &Rotation::about, "axis"_a, "angle"_a,
                   "By angle [rad], a number or a parameter, about the vector axis (any length but "
                   "0): the columns are the axes of the rotated frame a in frame b.")
-      .def_static("matrix", &Rotation::matrix, "T"_a,
-                  "From its 3 x 3 matrix; not-a-rotation unless orthonormal to 1e-9 and det > 0.")
+      .def_static(
+          "matrix",
+          [](const py::object& T) {
+            return Rotation::matrix(real_array<Matrix3d>(T, "T of Rotation.matrix (3 x 3)"));
+          },
+          "T"_a, "From its 3 x 3 matrix; not-a-rotation unless orthonormal to 1e-9 and det > 0.")
       .def("named", &Rotation::named, "to"_a, "from_"_a,
            "The same with names of frames: components in from_ to components in to.")
       .def_property_readonly("inverse", &Rotation::inverse, "T_ab from T_ba.")

@@ -11,12 +11,12 @@ int component_of(const std::string& name) {
 
 fe::Mesh mesh_by_hand(const std::string& name, const py::dict& points,
                       const std::vector<std::pair<std::string, std::string>>& dofs,
-                      const Eigen::MatrixXd& M, const Eigen::MatrixXd& K,
-                      const py::dict& interfaces, const py::dict& edges, double digits,
-                      const std::optional<Matrix6>& rigid) {
+                      const py::object& M, const py::object& K, const py::dict& interfaces,
+                      const py::dict& edges, double digits, const std::optional<Matrix6>& rigid) {
   fe::Mesh mesh;
   mesh.name = name, mesh.digits = digits, mesh.rigid = rigid;
-  mesh.M = M, mesh.K = K;
+  mesh.M = real_array(M, "M of Mesh");
+  mesh.K = real_array(K, "K of Mesh", "; structural damping is FlexibleBody.with_loss_factor(eta)");
   for (const auto& [point, place] : points)
     mesh.points.push_back({taken<std::string>(point, "the name of a point"),
                            taken<Vector3d>(place, "a point's vector of 3 [m]")});

@@ -88,16 +88,21 @@ std::vector<std::string> names_or_numbers(std::vector<std::string> names, Eigen:
   return names;
 }
 
-StateSpace model_by_hand(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B,
-                         const Eigen::MatrixXd& C, const Eigen::MatrixXd& D,
-                         const std::vector<std::string>& states,
+StateSpace model_by_hand(const py::object& A, const py::object& B, const py::object& C,
+                         const py::object& D, const std::vector<std::string>& states,
                          const std::vector<std::string>& inputs,
                          const std::vector<std::string>& outputs) {
-  StateSpace model{A, B, C, D, states, inputs, outputs};
+  StateSpace model{real_array(A, "A of StateSpace"),
+                   real_array(B, "B of StateSpace"),
+                   real_array(C, "C of StateSpace"),
+                   real_array(D, "D of StateSpace"),
+                   states,
+                   inputs,
+                   outputs};
   require_fitting(model, "StateSpace");
-  model.states = names_or_numbers(states, A.rows(), "x", "states");
-  model.inputs = names_or_numbers(inputs, B.cols(), "u", "inputs");
-  model.outputs = names_or_numbers(outputs, C.rows(), "y", "outputs");
+  model.states = names_or_numbers(states, model.A.rows(), "x", "states");
+  model.inputs = names_or_numbers(inputs, model.B.cols(), "u", "inputs");
+  model.outputs = names_or_numbers(outputs, model.C.rows(), "y", "outputs");
   return model;
 }
 

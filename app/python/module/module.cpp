@@ -24,6 +24,7 @@ py::array read_only(py::array array) {
 
 PYBIND11_MODULE(_titop, m) {
   using namespace titop::python;
+  refuse_imaginary_parts();
   bind_errors(m);
   bind_signals(m);
   bind_diagram(m);

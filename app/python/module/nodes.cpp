@@ -17,9 +17,12 @@ void bind_lti(py::module_& m) {
                   "frames. A n x n, B n x nu, C ny x n, D ny x nu; an empty D is 0; A, B and C "
                   "empty for a pure D. values: [(\"A\", 2, 1, -1 * k)] puts a parameter in place "
                   "of an entry, counted from 1.")
-      .def(py::init([](const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, const Eigen::MatrixXd& C,
-                       const Eigen::MatrixXd& D, const std::vector<Entry>& values) {
-             Lti spec{.A = A, .B = B, .C = C, .D = D};
+      .def(py::init([](const py::object& A, const py::object& B, const py::object& C,
+                       const py::object& D, const std::vector<Entry>& values) {
+             Lti spec{.A = real_array(A, "A of Lti"),
+                      .B = real_array(B, "B of Lti"),
+                      .C = real_array(C, "C of Lti"),
+                      .D = real_array(D, "D of Lti")};
              for (const auto& [matrix, row, column, value] : values)
                spec.values.push_back({matrix, row, column, value});
              return spec;

@@ -35,12 +35,24 @@ bool read_matrix(const std::vector<py::object>& rows, std::size_t n, std::vector
   return true;
 }
 
+/// The kind of the numbers of a NumPy object, 'c' of complex ones; "" of other objects.
+std::string kind_of(const py::handle& object) {
+  if (!py::hasattr(object, "dtype")) return {};
+  return py::str(py::getattr(object.attr("dtype"), "kind", py::str()));
+}
+
 /// True of a complex number or a truth value, also of NumPy, which float() would accept or warn of.
 bool is_no_real(const py::handle& object) {
-  if (py::isinstance<py::bool_>(object) || PyComplex_Check(object.ptr())) return true;
-  if (!py::hasattr(object, "dtype")) return false;
-  const auto kind = py::str(object.attr("dtype").attr("kind")).cast<std::string>();
-  return kind == "c" || kind == "b";
+  return py::isinstance<py::bool_>(object) || is_complex(object) || kind_of(object) == "b";
+}
+
+/// NumPy's own copy of one array into another.
+int (*copy_into)(PyObject* to, PyObject* from) = nullptr;
+
+int copy_real_into(PyObject* to, PyObject* from) {
+  if (!is_complex(from) || is_complex(to)) return copy_into(to, from);
+  PyErr_SetString(PyExc_TypeError, "titop: an array of real numbers is expected");
+  return -1;
 }
 
 /// The same number, or the same multiple of the same parameter.
@@ -85,6 +97,27 @@ Eigen::MatrixXd numbers(const std::vector<Value>& values, Eigen::Index n) {
 }
 
 }  // namespace
+
+bool is_complex(const py::handle& object) {
+  if (PyFloat_Check(object.ptr()) || PyLong_Check(object.ptr())) return false;
+  return PyComplex_Check(object.ptr()) || kind_of(object) == "c";
+}
+
+void refuse_imaginary_parts() {
+  auto& numpy = py::detail::npy_api::get();
+  if (copy_into) return;
+  copy_into = numpy.PyArray_CopyInto_;
+  numpy.PyArray_CopyInto_ = copy_real_into;
+}
+
+py::type_error no_real_array(const py::handle& object, const std::string& argument,
+                             const std::string& instead) {
+  std::string text = "titop: " + argument + ": an array of real numbers is expected, not " +
+                     py::repr(object).cast<std::string>();
+  if (const py::array array = py::array::ensure(object); array && is_complex(array))
+    text += ". Write .real of it to leave the imaginary part out" + instead;
+  return py::type_error(text);
+}
 
 bool read(const py::handle& object, Value& value) {
   if (py::isinstance<Parameter>(object)) {

@@ -19,6 +19,25 @@ struct Parameter {
   std::shared_ptr<void> diagram;
 };
 
+/// True of a complex number, and of an array of them.
+bool is_complex(const pybind11::handle& object);
+/// From here on arrays of complex numbers are no matrices of real ones: NumPy's copy, which every
+/// conversion of an array calls, would drop imaginary parts with a warning.
+void refuse_imaginary_parts();
+/// The TypeError of an argument, "K of Mesh", that is no array of real numbers; `instead`: the way
+/// out besides .real, if it is complex.
+pybind11::type_error no_real_array(const pybind11::handle& object, const std::string& argument,
+                                   const std::string& instead);
+
+/// The array as a matrix or vector of real numbers; TypeError with the argument's name.
+template <class Matrix = Eigen::MatrixXd>
+Matrix real_array(const pybind11::handle& object, const std::string& argument,
+                  const std::string& instead = "") {
+  pybind11::detail::make_caster<Matrix> caster;
+  if (!caster.load(object, true)) throw no_real_array(object, argument, instead);
+  return pybind11::detail::cast_op<Matrix>(std::move(caster));
+}
+
 /// False if the object is neither a number nor a parameter.
 bool read(const pybind11::handle& object, Value& value);
 /// A vector of 3 numbers or parameters.
@@ -31,6 +50,21 @@ bool read(const pybind11::handle& object, SixAxes& matrix);
 }  // namespace titop::python
 
 namespace pybind11::detail {
+
+/// A number; a complex one of NumPy, whose imaginary part float() would drop, is refused.
+template <>
+struct type_caster<double> {
+  PYBIND11_TYPE_CASTER(double, const_name("float"));
+  bool load(handle source, bool convert) {
+    type_caster<long double> number;  // of the same Python numbers
+    if (!source || titop::python::is_complex(source) || !number.load(source, convert)) return false;
+    value = static_cast<double>(static_cast<long double&>(number));
+    return true;
+  }
+  static handle cast(double number, return_value_policy, handle) {
+    return PyFloat_FromDouble(number);
+  }
+};
 
 template <>
 struct type_caster<titop::Value> {

@@ -141,6 +141,52 @@ class Numbers(Refusals):
                 z.child.force += number
 
 
+class ImaginaryParts(Refusals):
+    """Arrays of complex numbers: the TypeError names the argument and tells of .real."""
+
+    def test_of_models(self):
+        for make in (titop.StateSpace, titop.Lti):
+            for name in "ABCD":
+                for number in 2 + 1j, np.complex64(1), 0j:
+                    matrices = dict.fromkeys("ABCD", np.ones((1, 1)))
+                    make(**matrices)
+                    matrices[name] = np.array([[number]])
+                    self.refused(lambda: make(**matrices), name + " of", "real")
+                    matrices[name] = [[number]]
+                    self.refused(lambda: make(**matrices), name + " of", "real")
+                    matrices[name] = np.array([[number]]).real
+                    make(**matrices)
+
+    def test_of_rotations_and_vectors(self):
+        self.refused(lambda: titop.Rotation.matrix(np.eye(3) * (1 + 0j)), "T of Rotation", ".real")
+        self.assertEqual(titop.Rotation.matrix(np.eye(3, dtype=int)).nominal.tolist(),
+                         np.eye(3).tolist())
+        self.refused(lambda: titop.about(np.array([1j, 0, 1])), "1.j")
+
+    def test_of_structural_damping(self):
+        K = np.diag([1e4] * 6)
+        B = np.hstack([-np.eye(6), np.eye(6)])
+        dofs = [(p, c) for p in "PC" for c in ("x", "y", "z", "rx", "ry", "rz")]
+
+        def mesh(M, K):
+            return titop.fe.Mesh(points={"P": [0, 0, 0], "C": [0, 0, 0]}, dofs=dofs, M=M,
+                                 K=B.T @ K @ B)
+
+        mesh(np.eye(12), K)
+        self.refused(lambda: mesh(np.eye(12), K * (1 + 0.02j)), "K of", "with_loss_factor")
+        self.refused(lambda: mesh(np.eye(12) * 1j, K), "M of", ".real")
+
+    def test_of_modes(self):
+        def data(**changed):
+            given = {"omega": [1.0], "xi": [0.0], "L_P": np.zeros((1, 6)), "D_P": np.eye(6)}
+            return titop.ModalData(**{**given, **changed})
+
+        data()
+        for name, array in (("omega", np.array([1 + 1j])), ("omega", [np.complex64(1)]),
+                            ("L_P", np.zeros((1, 6)) * 1j), ("D_P", np.eye(6) * 1j)):
+            self.refused(lambda: data(**{name: array}), name)
+
+
 class Casts(Refusals):
     """Arguments of other types: the TypeError names the expected and the given one."""
 
