@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <titop/compiler/solve/backward_error.hpp>
+#include <titop/compiler/solve/holds.hpp>
 #include <titop/compiler/solve/scalar.hpp>
 #include <titop/graph/linalg/index.hpp>
 
@@ -35,10 +36,11 @@ double largest_ratio_of(const RowMatrix<T>& residual, const RowMatrix<double>& m
 }
 
 /// Solves and refines: solve(rhs), residual(x, &magnitudes), error(residual, magnitudes). Adds the
-/// columns solved for to `columns`, if it is given.
+/// columns solved for to `columns`, and says whether the error is `enough` in the end, if they are
+/// given.
 template <class T, class Solve, class Residual, class Error>
 RowMatrix<T> refined_until(double enough, const RowMatrix<T>& rhs, Solve solve, Residual residual,
-                           Error error, int* columns) {
+                           Error error, int* columns, bool* is_enough = nullptr) {
   const auto count = [&] {
     if (columns) *columns += static_cast<int>(rhs.cols());
   };
@@ -49,6 +51,7 @@ RowMatrix<T> refined_until(double enough, const RowMatrix<T>& rhs, Solve solve, 
     RowMatrix<double> magnitudes;
     const RowMatrix<T> off = residual(result, &magnitudes);
     const double now = error(off, magnitudes);
+    if (is_enough) *is_enough = now <= enough;
     if (now <= enough || !(2 * now <= before) || step == kSteps) return result;
     before = now;
     result += solve(off);
@@ -101,9 +104,11 @@ double transposed_backward_error_of_rounding(const Plan& plan, double epsilon) {
   return of_rounding(length.empty() ? 0 : *std::max_element(length.begin(), length.end()), epsilon);
 }
 
+namespace {
+
 template <class T>
-RowMatrix<T> settled(const JointRows<T>& rows, const Factors<T>& factors, const RowMatrix<T>& rhs,
-                     int* columns) {
+RowMatrix<T> settled_by(const JointRows<T>& rows, const Factors<T>& factors,
+                        const RowMatrix<T>& rhs, int* columns, bool* to_rounding) {
   const Plan& plan = factors.plan();
   return refined_until<T>(
       backward_error_of_rounding(plan, Scalar<T>::epsilon()), rhs,
@@ -112,7 +117,20 @@ RowMatrix<T> settled(const JointRows<T>& rows, const Factors<T>& factors, const 
       [&](const RowMatrix<T>& r, const RowMatrix<double>& sizes) {
         return backward_error(plan, r, sizes);
       },
-      columns);
+      columns, to_rounding);
+}
+
+}  // namespace
+
+template <class T>
+RowMatrix<T> settled(const JointRows<T>& rows, const Factors<T>& factors, const RowMatrix<T>& rhs,
+                     int* columns) {
+  return settled_by(rows, factors, rhs, columns, nullptr);
+}
+
+RowMatrix<double> settled(const JointRows<double>& rows, const Factors<double>& factors,
+                          const RowMatrix<double>& rhs, bool& to_rounding) {
+  return settled_by(rows, factors, rhs, nullptr, &to_rounding);
 }
 
 template <class T>

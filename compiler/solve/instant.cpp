@@ -1,3 +1,4 @@
+#include <titop/compiler/solve/holds.hpp>
 #include <titop/compiler/solve/instant.hpp>
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/scalar.hpp>
@@ -26,8 +27,13 @@ Instant::Instant(const Factored& data, RowMatrix<double> known, const RowMatrix<
                  Refinement refinement)
     : now_{data, real_rows(*data.skeleton, data.numbers), std::move(known)}, rhs_(now_.rhs()) {
   if (more.size() > 0) rhs_ += more;
-  now_.unknowns = refinement == Refinement::none ? data.factors->solve(rhs_)
-                                                 : solve::settled(now_.rows, *data.factors, rhs_);
+  now_.unknowns = refinement == Refinement::none
+                      ? data.factors->solve(rhs_)
+                      : solve::settled(now_.rows, *data.factors, rhs_, to_rounding_);
+}
+
+bool Instant::holds() const {
+  return to_rounding_ || detail::holds(now_, rhs_, solve::Scalar<double>::epsilon());
 }
 
 RowMatrix<double> Instant::values(std::span<const int> first) const {
@@ -118,7 +124,7 @@ Instant Instant::off_by(RowMatrix<double> off, RowMatrix<double> magnitudes, int
   Instant result(*this);
   result.now_.known.setZero();
   result.now_.unknowns = now_.data.factors->solve(off);
-  result.rhs_ = std::move(off);
+  result.rhs_ = std::move(off), result.to_rounding_ = false;
   return result;
 }
 

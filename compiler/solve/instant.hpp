@@ -18,6 +18,10 @@ class Instant {
   /// Unknowns of the joint system, in the order of Plan::first.
   const solve::RowMatrix<double>& unknowns() const { return now_.unknowns; }
 
+  /// Whether they solve the equations to rounding (RefinedSolution::holds). Free if refinement has
+  /// come to that.
+  bool holds() const;
+
   /// to += the signal, size x columns, row-major.
   void add_value(int signal, double* to) const { now_.add_value(signal, to); }
 
@@ -51,6 +55,7 @@ class Instant {
 
   InstantIn<double> now_;
   solve::RowMatrix<double> rhs_;
+  bool to_rounding_ = false;  ///< their backward error
 };
 
 }  // namespace titop::detail

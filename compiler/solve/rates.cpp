@@ -1,6 +1,10 @@
+#include <fmt/format.h>
+
 #include <limits>
+#include <titop/compiler/solve/holds.hpp>
 #include <titop/compiler/solve/instant.hpp>
 #include <titop/compiler/solve/lifted_rows.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 /// xdot and y of given states and inputs: in double, or with unknowns refined in double-double.
 namespace titop::detail {
@@ -18,7 +22,24 @@ constexpr double kLossy = 0x1p-10;
 /// Steps until the unknowns have 1e-16, at three digits of the factors each.
 constexpr int kMostSteps = 8;
 
-/// Refines the unknowns with the factors in double.
+Error not_solved(const Factored& d) {
+  const solve::Health h = d.factors->health();
+  const int signal =
+      h.weakest_variable < 0 ? -1 : d.skeleton->joint.variables[linalg::at(h.weakest_variable)];
+  return {Code::singular,
+          fmt::format("{}: for given states and inputs refinement does not solve the equations to "
+                      "the rounding of double{}",
+                      d.graph().name,
+                      signal < 0 ? ""
+                                 : fmt::format("; the weakest pivot, {:.1g} of its terms, is that "
+                                               "of {}",
+                                               h.weakest, name_of(d.graph(), signal))),
+          "change the gains, masses or springs there, or ask for a transfer with "
+          "Precision::digits50"};
+}
+
+/// Refines the unknowns with the factors in double. Throws singular if they do not solve the
+/// equations then.
 void refine(InstantIn<Twofold>& now, const RowMatrix<double>& more) {
   RowMatrix<Twofold> rhs = now.rhs();
   if (more.size() > 0) rhs += solve::lifted<Twofold>(more);
@@ -32,6 +53,8 @@ void refine(InstantIn<Twofold>& now, const RowMatrix<double>& more) {
     if (!(2 * size <= before)) break;  // no digit remains, or no error
     before = size;
   }
+  if (in_double(now.unknowns).allFinite() && !holds(now, rhs, solve::Scalar<double>::epsilon()))
+    throw not_solved(now.data);
 }
 
 RateColumns finer_rates(const Factored& d, const RowMatrix<double>& known,
@@ -58,6 +81,7 @@ RateColumns rates(const Factored& d, const RowMatrix<double>& known,
                   const RowMatrix<double>& more) {
   if (d.factors->health().weakest < kLossy) return finer_rates(d, known, more);
   const Instant now(d, known, more, solve::Refinement::settled);
+  if (!now.holds() && now.unknowns().allFinite()) return finer_rates(d, known, more);
   return {now.xdot(), now.outputs()};
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <titop/compiler/solve/evaluate.hpp>
+#include <titop/compiler/solve/holds.hpp>
 #include <titop/compiler/solve/refined_solution.hpp>
 #include <titop/compiler/solve/scalar.hpp>
 #include <titop/graph/linalg/rounding.hpp>
@@ -22,8 +23,6 @@ constexpr int kSteps = 30;
 /// otherwise a later step must confirm it, up to kUntil after the first.
 constexpr double kPlain = 1e-9;
 constexpr int kUntil = 2;
-/// RefinedSolution::holds.
-constexpr double kSmallTerms = 1000;
 
 bool at_most(const Eigen::ArrayXd& change, const Eigen::ArrayXd& limit) {
   return (change <= limit.max(kUnderflow)).all();
@@ -67,20 +66,20 @@ typename RefinedSolution<T>::Losses RefinedSolution<T>::losses() {
 
 template <class T>
 bool RefinedSolution<T>::hold_to(double epsilon) const {
-  solve::RowMatrix<double> terms;
-  const solve::RowMatrix<T> off = residual(&terms);
-  const double rounding = backward_error_of_rounding(epsilon);
-  if (backward_error(off, terms) <= rounding) return true;
-  const Eigen::VectorXd unit = unit_sizes(), sums = sums_of(unit);
-  const double small = kSmallTerms * static_cast<double>(off.rows()) * epsilon;
-  for (Eigen::Index j = 0; j < off.cols(); ++j) {
-    double largest = 0;
-    for (Eigen::Index i = 0; i < unit.size(); ++i)
-      largest = std::max(largest, solve::size_of(unknowns_(i, j)) / unit(i));
-    for (Eigen::Index i = 0; i < off.rows(); ++i)
-      if (const double most = sums(i) * largest; terms(i, j) <= small * most) terms(i, j) += most;
-  }
-  return backward_error(off, terms) <= rounding;
+  struct Equations {
+    const RefinedSolution& of;
+    auto residual(solve::RowMatrix<double>* terms) const { return of.residual(terms); }
+    double backward_error(const solve::RowMatrix<T>& off,
+                          const solve::RowMatrix<double>& terms) const {
+      return of.backward_error(off, terms);
+    }
+    double backward_error_of_rounding(double eps) const {
+      return of.backward_error_of_rounding(eps);
+    }
+    Eigen::VectorXd unit_sizes() const { return of.unit_sizes(); }
+    Eigen::VectorXd sums_of(const Eigen::VectorXd& sizes) const { return of.sums_of(sizes); }
+  };
+  return solve::hold<T>(Equations{*this}, unknowns_, epsilon);
 }
 
 template <class T>
