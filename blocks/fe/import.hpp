@@ -17,7 +17,7 @@ struct ImportOptions {
   std::string parent = {};
   std::vector<std::string> children = {};  ///< child ports, of `Import::ports`
   DataUnits units = {};                    ///< of the file; a CSV has its own line of them
-  ModeOptions modes = {};                  ///< of the mesh: `rigid` in the file's units, `rayleigh` by seconds
+  ModeOptions modes = {};                  ///< of the mesh: `rigid` in its units, `rayleigh` in s
   /// Positions and frames of the grids of an OP4, MAT, DMIG or f06 file: bulk data (`read_grids`).
   /// Empty: the file of the same name with the extension .asm, or, without it, of a DMIG by statics
   /// from the parent, whose displacement frame is then the body's. Of an f06 its own bulk data
