@@ -45,12 +45,12 @@ TEST_CASE("random graphs: units leave verdict and transfer unchanged") {
 
 namespace {
 
-/// Its order and the passes that warn.
+/// Its order and the passes that warn, but for `check`: it knows the sizes of materials in SI.
 std::string verdict_on(const titop::Diagram& d) {
   const titop::System system = compile(d, {.minimize_up_to = 0});
   std::string text = std::to_string(system.order());
   for (const titop::Note& note : system.notes())
-    if (note.kind == titop::Note::Kind::warning) text += " " + note.pass;
+    if (note.kind == titop::Note::Kind::warning && note.pass != "check") text += " " + note.pass;
   return text;
 }
 
