@@ -61,7 +61,7 @@ std::string to_string(const FullCertificate::Reciprocity& r) {
       fmt::format("{} forces: {}", r.forces,
                   r.asymmetry <= certification::kHolds ? "reciprocal" : "not reciprocal");
   if (r.reversed) text += " if all momenta are reversed";
-  if (!r.momenta.empty()) text += fmt::format(" ({})", passes::text_of(r.momenta));
+  if (!r.momenta.empty()) text += fmt::format(" ({})", passes::momenta_text(r.momenta));
   if (r.asymmetry > 0)
     text +=
         fmt::format(" (the accelerations at {} and {} due to the other force differ by {:.1e}, {})",

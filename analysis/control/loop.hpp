@@ -17,8 +17,8 @@ namespace titop {
 /// A loop that feeds back with a plus (u = +L0 u) has L = -L0.
 struct ControlLoop {
   std::vector<std::string> points;  ///< the names, in the order of rows and columns
-  /// From u to the negative of the signal that returns to the cut. Its model is minimized up to
-  /// kMostStatesOfHinf states, also if Options::minimize_up_to is less.
+  /// From u to the negative of the signal that returns to the cut. Its state-space model is
+  /// minimized whatever Options::minimize_up_to is.
   System L;
   System S;  ///< from d added at the cut to u: (1 + L)^-1, the sensitivity
   System T;  ///< from d to L u: L (1 + L)^-1 = 1 - S, the complementary sensitivity

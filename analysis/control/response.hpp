@@ -18,8 +18,9 @@ double degrees(double radians);
 std::vector<double> decibels(std::span<const std::complex<double>> values);
 
 /// The angles of a response over ascending frequencies [deg], without jumps: each within 180 of the
-/// one before, the first in (-270, 90]. Where it turns by 180 at once (an undamped mode), towards
-/// -90, or to 90 from -90. Not a number for 0 and for values that are not finite.
+/// one before, the first in (-270, 90]. Where it turns by 180 at once (an undamped mode), to the
+/// angle that is nearer to -90, and from -90 to 90. Not a number for 0 and for values that are not
+/// finite.
 std::vector<double> degrees(std::span<const std::complex<double>> values);
 
 /// One response over frequencies.

@@ -131,7 +131,7 @@ std::optional<RateFeedback> rate_feedback(const Graph& graph, ParameterValues va
     refuse_forces(std::move(why));
   const passes::ForceGains gains = passes::rate_gains(graph, values);
   if (gains.empty()) return {};
-  RateFeedback f{graph, {}, {}, passes::text_of(passes::gyroscopic_points(graph, values))};
+  RateFeedback f{graph, {}, {}, passes::momenta_text(passes::gyroscopic_points(graph, values))};
   const Directions list = directions(graph, gains);
   for (const auto& [channel, U] : list)
     f.ports.insert(f.ports.end(), at(U.cols()), channel_name(graph, channel));

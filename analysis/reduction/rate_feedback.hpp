@@ -10,8 +10,8 @@
 namespace titop::detail {
 
 /// A diagram whose gyroscopic torques and equations of dampers are taken out. Where they act it has
-/// additional inputs w, forces of the work w' z, and outputs z, the rates there, after its own:
-/// the diagram as it was has w = -F z.
+/// additional inputs w, forces dual to z (their power is w' z), and outputs z, the rates there,
+/// after its own: the diagram as it was has w = -F z.
 struct RateFeedback {
   Graph graph;
   Eigen::MatrixXd F;  ///< z x z: symmetric part semidefinite (dampers), the rest gyroscopic
@@ -25,7 +25,7 @@ struct RateFeedback {
 std::optional<RateFeedback> rate_feedback(const Graph& graph, ParameterValues values);
 
 /// The whole of this diagram with its rates fed back: Z + P F P', P the modal vectors of w and z,
-/// which are one by reciprocity; motions without stiffness become mass-normalised first. Outputs
+/// which are equal by reciprocity; motions without stiffness become mass-normalised first. Outputs
 /// that accelerate with them are written so. Without the additional inputs and outputs. Throws
 /// NoStructure, with the port, if w and z are not reciprocal to 1e-7. O(n^2 z).
 void close(Whole& whole, const RateFeedback& feedback);

@@ -45,7 +45,7 @@ struct Scene {
   /// always. Refused if too many remain.
   int whole_up_to = 2000;
   /// Passive structures keep M, D, K, unless these would have more states than the minimal model
-  /// (rotors: momenta are constant; checked up to Options::minimize_up_to states). False: their
+  /// (checked up to Options::minimize_up_to states). False: their
   /// states are balanced, which may need fewer states at heavy damping.
   bool keep_structure = true;
   /// Largest number of states that are balanced, at O(100 n^3); in larger models bodies, and Lti of

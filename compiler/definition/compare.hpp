@@ -12,12 +12,12 @@ namespace titop::detail {
 using linalg::kNoise;
 
 /// Least size of an entry, relative to its terms: if they cancel further, double has no better
-/// accuracy than 1e-15 of them. Of a 0 to the last bit, whose terms cancel to 1e-17 in another
-/// order of summation, relative to its neighbours.
+/// accuracy than 1e-15 of them. The size of an entry that is 0 to the last bit is taken relative to
+/// its neighbours, since its terms may cancel to 1e-17 in another order of summation.
 inline constexpr double kLeastSize = 1e-3;
-/// Six digits. Of terms relative to their neighbours: with more rounding an entry has lost digits,
-/// and is no 0 that double misses. Of an entry in two computations: it is certain if they agree to
-/// this. Of an output far below its peak: a larger error is reported.
+/// Six digits. An entry whose terms exceed this share of their neighbours has lost digits by
+/// rounding; below it the entry may be a 0 that double misses. An entry is certain if two
+/// computations agree to this. A larger error of an output far below its peak is reported.
 inline constexpr double kSixDigits = 1e-6;
 
 /// Scales for the comparison of two transfers. Three translations (or rotations) of one port share

@@ -190,7 +190,7 @@ struct JointBuilder {
   static constexpr std::size_t kMost = 12, kTogether = 4;
 
   /// Replaces each four neighbouring variables of the row by their partial sum; a state goes with
-  /// the first of its inputs, and the others come along.
+  /// the first of its inputs; its row also contains the other inputs.
   void sum_up(int stage_row, int size, const Signal& like) {
     const auto begin = j.pieces.begin() + j.piece_begin.back();
     const std::vector<Piece> all(begin, j.pieces.end());

@@ -89,7 +89,7 @@ void add_reciprocity(std::vector<Item>& items, const FullCertificate::Reciprocit
                                "the acceleration at force i due to force j{}{}{}.",
                                count(static_cast<std::size_t>(r.forces), "force"),
                                r.reversed ? fmt::format(", G_ji with all momenta reversed ({})",
-                                                        passes::text_of(r.momenta))
+                                                        passes::momenta_text(r.momenta))
                                           : "",
                                r.first.empty() ? "" : fmt::format("; {} and {}", r.first, r.second),
                                r.structure ? "" : "; not required: " + r.why_no_structure),

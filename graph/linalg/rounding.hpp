@@ -32,12 +32,14 @@ inline constexpr double kMatrixDigits = 1e-9;
 inline constexpr double kSumsOfSums = 1e-12;
 
 /// The accuracy that is promised, six digits less than double has: larger errors of results are
-/// reported, smaller effects on them need not be kept.
+/// reported, smaller effects on them need not be kept, and derivatives that agree to it count as
+/// smooth.
 inline constexpr double kWarn = 1e-9;
 /// Numbers read from a text file have some six digits: a smaller relative difference, or share of
 /// the largest, is 0.
 inline constexpr double kTextDigits = 1e-6;
-/// An error, or a loss in a pivot, that leaves three digits: what is known less well is not used.
+/// Three digits: results with a larger error are not used, nor are pivots below this share of the
+/// best, which would cost more than three digits.
 inline constexpr double kThreeDigits = 1e-3;
 /// Times one sample of rounding, which may be small by chance: a smaller number may be rounding
 /// alone.

@@ -38,7 +38,8 @@ TEST_CASE("two halves of 8 x 16 elements: a table of another program, and the ex
       CAPTURE(row.m);
       CAPTURE(k);
       const auto i = static_cast<Index>(k);
-      CHECK(std::abs(above(i) - row.above[k]) <= 6e-7);  // half of the last digit printed
+      CHECK(std::abs(above(i) - row.above[k]) <=
+            6e-7);  // half of the last digit printed, and rounding
       CHECK(std::abs(below(i) - row.below[k]) <= 6e-7);
       CHECK(above(i) >= exact[k] - 5e-7);
       CHECK(below(i) <= exact[k] + 5e-7);

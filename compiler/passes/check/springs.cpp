@@ -224,7 +224,7 @@ std::vector<std::pair<std::string, double>> gyroscopic_points(const Graph& g,
   return result;
 }
 
-std::string text_of(const std::vector<std::pair<std::string, double>>& points) {
+std::string momenta_text(const std::vector<std::pair<std::string, double>>& points) {
   std::vector<std::string> list;
   for (const auto& [port, h] : points)
     list.push_back(h > 0 ? fmt::format("{:.6g} N m s at {}", h, port)

@@ -45,6 +45,6 @@ ForceGains gyroscopic_gains(const Graph& graph, ParameterValues values);
 std::vector<std::pair<std::string, double>> gyroscopic_points(const Graph& graph,
                                                               ParameterValues values);
 /// "40 N m s at w1.parent, ...".
-std::string text_of(const std::vector<std::pair<std::string, double>>& gyroscopic_points);
+std::string momenta_text(const std::vector<std::pair<std::string, double>>& gyroscopic_points);
 
 }  // namespace titop::passes

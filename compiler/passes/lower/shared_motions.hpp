@@ -12,16 +12,16 @@
 /// cancels in its coefficients, as it does where motions are written out.
 namespace titop::passes {
 
-/// Those of this graph, upper ones first: where several equations read a way of more than a dozen
-/// states, its points that they read, and where ways meet. None if no way is that long. Of the
-/// equations only: outputs are no unknowns. O(terms + sum over equations of the length of ways with
-/// a common end).
+/// The shared motions of this graph, upper ones first. If several equations read a way of more than
+/// a dozen states, these are the motions of the points that they read, and of those at which ways
+/// meet. Outputs are no unknowns and do not count. None if no way is that long. O(terms + sum over
+/// equations of the length of ways with a common end).
 std::vector<Lowering::SharedMotion> find_shared_motions(const Stage& stage, const Graph& graph);
 
 /// Appends the node of a shared motion, whose one signal it is; returns its index.
 int add_shared_motion(Graph& graph, const Lowering::SharedMotion& motion);
 
-/// Those that `lower` has added to the stage's graph.
+/// The shared motions that `lower` has added to the stage's graph.
 std::vector<Lowering::SharedMotion> shared_motions_of(const Stage& stage);
 
 }  // namespace titop::passes
