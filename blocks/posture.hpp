@@ -11,7 +11,9 @@ namespace titop {
 
 /// A joint of a loop, and the link that follows it.
 struct LoopStep {
-  Axis joint;                        ///< about(r) or along(r); r in the frame of the link before
+  /// about(r) or along(r); r in the joint's frame: in the frame of the link before it is turn r,
+  /// with the `turn` of that link, of the last link for the first joint.
+  Axis joint;
   std::optional<double> given = {};  ///< its angle [rad] or travel [m], if it is known
   double guess = 0;                  ///< its start value otherwise
   Vector3d link = Vector3d::Zero();  ///< from this joint to the next one, in the link's frame [m]
