@@ -3,6 +3,7 @@
 #include <titop/analysis/reduction/gramians.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/schur.hpp>
+#include <titop/graph/linalg/svd.hpp>
 
 namespace titop::detail {
 namespace {
@@ -62,15 +63,15 @@ Balancing balance(const Split& split, const PortSizes& sizes, double corner) {
                                                  .colwise()
                                                  .reverse());
   const MatrixXd L = real_factor(reached), R = real_factor(seen);
-  const Eigen::BDCSVD<MatrixXd> svd(R.transpose() * L, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const VectorXd& sigma = svd.singularValues();
+  const linalg::Svd svd = linalg::svd(R.transpose() * L);
+  const VectorXd& sigma = svd.sigma;
   const double least = static_cast<double>(n) * std::numeric_limits<double>::epsilon() * sigma(0);
   Index m = 0;
   while (m < n && sigma(m) > least) ++m;
   b.sigma = sigma.head(m);
   const VectorXd root = b.sigma.cwiseSqrt().cwiseInverse();
-  const MatrixXd left = root.asDiagonal() * svd.matrixU().leftCols(m).transpose() * R.transpose(),
-                 right = L * svd.matrixV().leftCols(m) * root.asDiagonal();
+  const MatrixXd left = root.asDiagonal() * svd.U.leftCols(m).transpose() * R.transpose(),
+                 right = L * svd.V.leftCols(m) * root.asDiagonal();
   b.A = left * split.stable.A * right;
   b.B = left * split.stable.B;
   b.C = split.stable.C * right;

@@ -101,7 +101,7 @@ bool clearly_full_rank(MatrixXd M) {
   const Eigen::VectorXd size = M.rowwise().norm();
   if (M.cols() < M.rows() || !(size.minCoeff() > kClearRow * size.maxCoeff())) return false;
   M = size.cwiseInverse().asDiagonal() * M;
-  return Eigen::BDCSVD<MatrixXd>(M).singularValues()(M.rows() - 1) > kClearRank;
+  return Eigen::JacobiSVD<MatrixXd>(M).singularValues()(M.rows() - 1) > kClearRank;
 }
 
 }  // namespace titop::minreal

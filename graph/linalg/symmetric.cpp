@@ -5,6 +5,7 @@
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/rounding.hpp>
+#include <titop/graph/linalg/svd.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 
 namespace titop {
@@ -97,13 +98,10 @@ SymmetricModes eigh_definite(const MatrixXd& K, const MatrixXd& M) {
   const auto llt_M = cholesky(M, "M");
   MatrixXd W = llt_K.matrixU();
   llt_M.matrixU().solveInPlace<Eigen::OnTheRight>(W);
-  const Eigen::BDCSVD<MatrixXd> svd(W, Eigen::ComputeFullV);
-  if (svd.info() != Eigen::Success)
-    throw Error(Code::singular, "the singular value iteration did not converge",
-                "look for entries of extreme size");
-  MatrixXd V = svd.matrixV().rowwise().reverse();
+  const linalg::Svd svd = linalg::svd(W);
+  MatrixXd V = svd.V.rowwise().reverse();
   llt_M.matrixU().solveInPlace(V);
-  return {svd.singularValues().reverse().array().square(), with_signs(std::move(V))};
+  return {svd.sigma.reverse().array().square(), with_signs(std::move(V))};
 }
 
 SymmetricModes eigh_lowest(const MatrixXd& K, const MatrixXd& M, Index count) {

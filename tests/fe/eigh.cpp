@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <titop/blocks/fe/beam.hpp>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
@@ -207,4 +208,26 @@ TEST_CASE("nothing has no modes") {
   CHECK(eigh_definite(none, none).lambda.size() == 0);
   CHECK(eigh_lowest(none, none, 0).lambda.size() == 0);
   CHECK(eigh_lowest(random_definite(3, 11), random_definite(3, 12), 0).V.rows() == 3);
+}
+
+TEST_CASE("a short beam clamped inside: motions that nothing couples are not mixed") {
+  // Bending in two planes, torsion and length of both halves.
+  Beam beam{.length = 0.31474084908011568,
+            .section = {.area = 0.0012352854566836154,
+                        .I_y = 2.8587265759723099e-08,
+                        .I_z = 1.7434166891898604e-07,
+                        .J = 1.9840032355771062e-07},
+            .material = {.E = 47397.161026027119, .rho = 6969.0223710365162},
+            .elements = 3};
+  beam.section.I_x = 2.0844613696903259e-07;
+  beam.material.nu = -0.13132845400995857;
+  const fe::Mesh mesh = beam_mesh(beam);
+  std::vector<Index> rows;
+  for (std::size_t i = 0; i < mesh.dofs.size(); ++i)
+    if (mesh.points[mesh.dofs[i].point].name != "2") rows.push_back(static_cast<Index>(i));
+  REQUIRE(rows.size() == 18);
+  const MatrixXd K = mesh.K(rows, rows), M = mesh.M(rows, rows);
+  const SymmetricModes modes = eigh_definite(K, M);
+  CHECK(energy_error(K, modes) <= 1e-10);
+  CHECK(orthogonality(modes.V, M) <= 1e-10);
 }
