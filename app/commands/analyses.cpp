@@ -253,7 +253,7 @@ int sweep_table(const Arguments& a) {
     return sweep_of(a, ranks);
   } catch (...) {  // before the sweep: all processes have the same error
     if (ranks.first()) throw;
-    return 1;
+    return 0;  // mpirun would end the first process, which writes the error, after another's 1
   }
 }
 
