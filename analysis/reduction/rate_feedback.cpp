@@ -5,6 +5,7 @@
 #include <titop/analysis/reduction/rate_feedback.hpp>
 #include <titop/compiler/passes/check/springs.hpp>
 #include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/linalg/rounding.hpp>
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <titop/analysis/reduction/sequence.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/linalg/rounding.hpp>
 #include <utility>
