@@ -8,6 +8,7 @@
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
+#include <utility>
 
 namespace titop::detail {
 namespace {
@@ -28,11 +29,16 @@ struct Ports {
   MatrixXd b, c;  ///< n x z each
 };
 
-/// A rate that is rounding beside the others, as at a point that is held, counts as 0.
+/// Sizes of the rates, and the one below which a rate is rounding beside the others, as at a point
+/// that is held.
+std::pair<Eigen::RowVectorXd, double> sizes_of(const MatrixXd& b, const MatrixXd& c) {
+  const Eigen::RowVectorXd size = b.colwise().norm() + c.colwise().norm();
+  return {size, size.size() > 0 ? linalg::kAxisRounding * size.maxCoeff() : 0};
+}
+
 void require_reciprocal(const MatrixXd& b, const MatrixXd& c,
                         const std::vector<std::string>& ports) {
-  const Eigen::RowVectorXd size = b.colwise().norm() + c.colwise().norm();
-  const double least = size.size() > 0 ? linalg::kAxisRounding * size.maxCoeff() : 0;
+  const auto [size, least] = sizes_of(b, c);
   for (Index j = 0; j < b.cols(); ++j)
     if (!((b.col(j) - c.col(j)).norm() <= std::max(kSymmetric * size(j), least)))
       refuse_asymmetry(
@@ -44,8 +50,7 @@ void require_reciprocal(const MatrixXd& b, const MatrixXd& c,
 /// more such motions than coordinates, since forces and rates are not reciprocal.
 MatrixXd mobility(const MatrixXd& b, const MatrixXd& c) {
   const MatrixXd S = (c.transpose() * b + b.transpose() * c) / 2;
-  const Eigen::RowVectorXd size = b.colwise().norm() + c.colwise().norm();
-  const double least = size.size() > 0 ? linalg::kAxisRounding * size.maxCoeff() : 0;
+  const auto [size, least] = sizes_of(b, c);
   VectorXd d = S.diagonal().cwiseMax(0).cwiseSqrt();
   d = (size.transpose().array() > least).select(d, 0);
   d = (d.array() > 0).select(d.cwiseInverse(), 0);
