@@ -201,7 +201,7 @@ bool check_instant(const Factored& d, const RowMatrix<double>& u, double s, Cert
   return true;
 }
 
-/// What double loses of the outputs, the sum of what it loses by each input alone, but for blocks
+/// Loss of the outputs in double, the sum of the losses by each input alone, but for blocks
 /// that are 0 by symmetry: beside the effect of another input, in any unit, their rounding may be
 /// large. A solution of two columns per input.
 RowMatrix<double> lost_by_inputs(const Factored& d, const RowMatrix<double>& u, double s) {

@@ -114,7 +114,7 @@ struct Ways {
     if (!motions.empty()) read.push_back(std::move(motions));
   }
 
-  /// What all lowered equations read.
+  /// Sets `read`: the motions in each lowered equation.
   void read_all() {
     std::vector<std::pair<int, Level>> list;
     l.readings = &list;
