@@ -77,8 +77,16 @@ std::vector<double> structured(const std::vector<std::complex<double>>& roots, d
     if (omega > 0 && std::isfinite(omega)) list.push_back(omega);
   };
   for (const std::complex<double>& s : roots) add(std::abs(s)), add(std::abs(s.imag()));
-  if (const double step = std::numbers::pi / 2 / delay; delay > 0)
+  if (delay > 0) {
+    const double step = std::numbers::pi / 2 / delay;
     for (double k = 1; k * step <= end; ++k) list.push_back(k * step);
+    for (const std::complex<double>& s : roots) {
+      const double center = std::abs(s.imag()),
+                   half_width = std::max(std::abs(s.real()), linalg::kHalfDigits * center);
+      for (double off = half_width / 2; off > 0 && off <= center / 2; off *= 2)
+        add(center - off), add(center + off);
+    }
+  }
   if (list.empty()) list.push_back(1);
   const auto [low, high] = std::minmax_element(list.begin(), list.end());
   for (const double omega : {*low / 10, *low / 100, *high * 10, *high * 100}) list.push_back(omega);

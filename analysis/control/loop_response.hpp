@@ -42,8 +42,11 @@ struct SidedPole {
 std::vector<SidedPole> sided_poles(const StateSpace& model, double period = 0);
 
 /// Frequencies [rad/s], ascending and different, above 0, at which or between which |L| and arg L
-/// change: |s| and Im s of the roots given, with a delay steps of a quarter turn up to `end`, two
-/// decades beyond both ends, and the geometric means between neighbours.
+/// change: |s| and Im s of the roots given, two decades beyond both ends, and the geometric means
+/// between neighbours. With a delay, where crossings are found by changes of sign alone, also:
+/// steps of a quarter turn up to `end`; around each root half its half width |Re s| (at
+/// least 1.5e-8 of |Im s|), doubled up to |Im s| / 2, since near a resonance L turns within a few
+/// half widths.
 std::vector<double> structured(const std::vector<std::complex<double>>& roots, double delay,
                                double end);
 

@@ -57,9 +57,12 @@ MarginAt least(const F& f, const std::vector<double>& list) {
     if (values[i] < best.value) best = {values[i], list[i]};
     if (i == 0 || i + 1 == list.size() || values[i] > values[i - 1] || values[i] > values[i + 1])
       continue;
-    const auto [omega, value] =
-        boost::math::tools::brent_find_minima(f, list[i - 1], list[i + 1], 40);
-    if (value < best.value) best = {value, omega};
+    // Over t, not omega: the tolerance of brent_find_minima is relative to its variable, and the
+    // interval may be as narrow as a resonance.
+    const auto omega = [&](double t) { return std::lerp(list[i - 1], list[i + 1], t); };
+    const auto [part, value] =
+        boost::math::tools::brent_find_minima([&](double t) { return f(omega(t)); }, 0.0, 1.0, 40);
+    if (value < best.value) best = {value, omega(part)};
   }
   return best;
 }

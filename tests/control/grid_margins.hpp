@@ -81,9 +81,9 @@ inline std::vector<Real> grid(const std::vector<Fraction>& parts) {
   for (const Fraction& p : parts) {
     if (!p.second) continue;
     const Real half = Real(p.a1) / 2, w = std::sqrt(Real(p.a0) - half * half);
-    for (int k = -20; k <= 60; ++k)
+    for (int k = -80; k <= 240; ++k)
       for (const int sign : {-1, 1})
-        if (const Real x = w + sign * half * std::pow(Real(10), Real(k) / 10); x > 0)
+        if (const Real x = w + sign * half * std::pow(Real(10), Real(k) / 40); x > 0)
           list.push_back(x);
   }
   std::sort(list.begin(), list.end());
@@ -109,13 +109,13 @@ inline std::vector<Real> roots(const std::function<Real(Real)>& f, const std::ve
   return result;
 }
 
-/// The least f, by thirds around the least points of the grid.
+/// The least f, by thirds around every local minimum of the grid.
 inline Real least(const std::function<Real(Real)>& f, const std::vector<Real>& list) {
   std::vector<Real> value;
   for (const Real w : list) value.push_back(f(w));
   Real best = *std::min_element(value.begin(), value.end());
   for (std::size_t i = 1; i + 1 < list.size(); ++i) {
-    if (value[i] > value[i - 1] || value[i] > value[i + 1] || value[i] > 1.02L * best) continue;
+    if (value[i] > value[i - 1] || value[i] > value[i + 1]) continue;
     Real a = list[i - 1], b = list[i + 1];
     for (int k = 0; k < 50; ++k) {
       const Real x = a + (b - a) / 3, y = b - (b - a) / 3;

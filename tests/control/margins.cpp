@@ -177,6 +177,18 @@ TEST_CASE("an integrator with a lag and a delay, the lag from slower to far fast
     }
 }
 
+TEST_CASE(
+    "a double integrator, a PD law, a filter of damping sqrt(1/2), a delay: no smaller gain") {
+  for (int i = 0; i < 60; ++i) {
+    const double w = 2 * std::pow(1.1, i), zeta = i % 2 ? std::sqrt(0.5) : 0.5;
+    CAPTURE(w);
+    // (s + 0.25) w^2 / (s^2 (s^2 + 2 zeta w s + w^2)): below -180 deg from a frequency on only.
+    const LoopMargins m = one(ratio({w * w, 0.25 * w * w}, {1, 2 * zeta * w, w * w, 0, 0}), 0.05);
+    CHECK(m.smaller_gain.value == 0);
+    CHECK(m.larger_gain.value > 1);
+  }
+}
+
 TEST_CASE("with a delay and a pole on the axis, or a direct term") {
   const Margins m = margins(ratio({1}, {1, 0}), {.delay = pi / 2});  // -1 at 1 rad/s
   CHECK(!m.stable);
