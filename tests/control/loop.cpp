@@ -116,8 +116,9 @@ TEST_CASE("three axes at once, and one of two cuts") {
   auto law = [&](const char* name, const Vector3d& r, double k) {
     return d.loop_point(name, k * turn.along(r) + kd * rate.along(r));
   };
-  hub.parent.force.angular =
-      x * law("x", {1, 0, 0}, 2) + y * law("y", {0, 1, 0}, 6) + z * law("z", {0, 0, 1}, 1);
+  const auto x_torque = law("x", {1, 0, 0}, 2), y_torque = law("y", {0, 1, 0}, 6),
+             z_torque = law("z", {0, 0, 1}, 1);
+  hub.parent.force.angular = x * x_torque + y * y_torque + z * z_torque;
   d.output("turn", 3) = turn;
   const System system = compile(d);
   CHECK(loop_points(system) == std::vector<std::string>{"x", "y", "z"});

@@ -84,7 +84,10 @@ TEST_CASE("a reciprocal scene: a transposed solve is the solve with its ports sw
   Diagram d{"reciprocal"};
   Eigen::MatrixXd L(2, 6);
   L << 0.2, 1, 0.3, -0.1, 0.2, 0.9, 0.5, 0.1, 0.2, 0.4, 0, 0.3;
-  ModalData boom{.omega = Eigen::Vector2d(2, 5), .xi = Eigen::Vector2d(0.01, 0.02), .L_P = L};
+  ModalData boom;
+  boom.omega = Eigen::Vector2d(2, 5);
+  boom.xi = Eigen::Vector2d(0.01, 0.02);
+  boom.L_P = L;
   boom.D_P = rigid_mass(6, 4 * Matrix3d::Identity(), Vector3d(-0.5, 0, 0));
   boom.children = {{"C", {1, 0.2, 0}, Eigen::MatrixXd(0.3 * L.transpose())}};
   auto hub = d.add("hub", RigidBody{.mass = 9,
