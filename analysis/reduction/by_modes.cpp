@@ -74,7 +74,7 @@ class ByModes : public Reduction {
   double beyond() const { return 1.2 * (2 * pi * setting_.scene.band_hz[1]); }
 
   void read_at_rest(const Graph& graph) {
-    read_whole(setting_.model, *setting_.data, graph);
+    read_whole(setting_.model, *setting_.data, graph, nullptr);
     setting_.band = band_of(setting_.model, setting_.scene, whole_);
     sharpen(whole_, setting_.model, beyond());
     if (setting_.scene.bound == BoundKind::theorem) couple(whole_);
@@ -84,7 +84,7 @@ class ByModes : public Reduction {
   void read_with_rotors(const RateFeedback& rates) {
     const auto at_rest = compiled(rates.graph);
     const System system(at_rest);
-    read_whole(system, *at_rest, rates.graph);
+    read_whole(system, *at_rest, rates.graph, &rates);
     sharpen(whole_, system, beyond());
     close(whole_, rates);
     couple(whole_);
@@ -105,9 +105,11 @@ class ByModes : public Reduction {
                       "take balanced states");
   }
 
-  /// `whole_` of this system, which was compiled from the graph.
-  void read_whole(const System& system, const SystemData& data, const Graph& graph) {
+  /// `whole_` of this system, which was compiled from the graph, at rest if it has rotors.
+  void read_whole(const System& system, const SystemData& data, const Graph& graph,
+                  const RateFeedback* rates) {
     Coordinates c = coordinates(system, data);
+    if (rates) scale_masses(c, *rates);
     setting_.note_structure(c.size());
     join(c, data.graph());
     if (c.size() > setting_.scene.whole_up_to) refuse_size(setting_, c.size());

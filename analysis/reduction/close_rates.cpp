@@ -87,6 +87,26 @@ void normalise(Whole& w, Ports& p, const std::vector<std::string>& ports) {
   p.c.bottomRows(loose) = T.transpose() * p.c.bottomRows(loose);
 }
 
+/// The factor of the masses of this part by which b = c at the port with the largest mobility b c
+/// there; 1 if ports reach the part by rounding only. With motions without stiffness, whose rates
+/// are c_l: B = G c - K^-1 A_l' c_l in these coordinates.
+double mass_factor(const Coordinates& c, const std::vector<int>& part, Index z) {
+  const Index loose = c.size() - c.n_elastic;
+  const MatrixXd G = c.G(part, part), K = c.K(part, part);
+  const MatrixXd w = c.B.rightCols(z), rates = c.C_v.bottomRows(z).transpose();
+  const MatrixXd in = w(part, Eigen::all);
+  const MatrixXd out =
+      G * rates(part, Eigen::all) -
+      solve_definite(K, c.A_loose(Eigen::all, part).transpose() * rates.bottomRows(loose));
+  Index port = 0;
+  const double both = in.cwiseProduct(out).colwise().sum().maxCoeff(&port);
+  if (!(both > 0)) return 1;
+  const VectorXd b = in.col(port);
+  const double factor = both / b.squaredNorm();
+  const double mobility = factor * b.dot(VectorXd(solve_definite(G, b)));
+  return mobility > linalg::kAxisRounding * w.col(port).dot(rates.col(port)) ? factor : 1;
+}
+
 /// Accelerations that follow w at once, by those of the motions without stiffness: D_w = g P, of
 /// which the rest is left in D_w.
 void read_loose(Whole& w, const MatrixXd& P, MatrixXd& D_w) {
@@ -113,6 +133,16 @@ Index resting(const Whole& w) {
 }
 
 }  // namespace
+
+void scale_masses(Coordinates& c, const RateFeedback& f) {
+  for (const std::vector<int>& part : c.unscaled) {
+    const double factor = mass_factor(c, part, f.F.rows());
+    c.G(part, part) /= factor;
+    c.K(part, part) *= factor;
+    if (c.D.size() > 0) c.D(part, part) *= factor;
+  }
+  c.unscaled.clear();
+}
 
 void close(Whole& w, const RateFeedback& f) {
   const Index z = f.F.rows(), inputs = w.b.cols() - z, outputs = w.cv.rows() - z;

@@ -6,6 +6,8 @@
 #include <titop/analysis/reduction/coordinates.hpp>
 #include <titop/analysis/reduction/coupled_springs.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
+#include <titop/graph/linalg/similarity_scaling.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 
 namespace titop::detail {
@@ -178,10 +180,11 @@ Raw read(const System& system, const SystemData& data) {
 }
 
 /// Stiffnesses k of the coordinates `list` (rows and columns of A = -G k), so that G is symmetric:
-/// k_i / k_j = A_ji / A_ij, from those that are known along the strongest couplings.
+/// k_i / k_j = A_ji / A_ij, from those that are known along the strongest couplings; those that are
+/// rounding couple nothing.
 VectorXd stiffnesses(const MatrixXd& A, const VectorXd& known) {
   const Index n = A.rows();
-  VectorXd k = known, best = VectorXd::Constant(n, -1);
+  VectorXd k = known, best = VectorXd::Constant(n, linalg::kAxisRounding * linalg::kAxisRounding);
   std::vector<Index> from(at(n), -1);
   const auto offer = [&](Index i) {
     for (Index j = 0; j < n; ++j) {
@@ -198,7 +201,7 @@ VectorXd stiffnesses(const MatrixXd& A, const VectorXd& known) {
       if (k(j) == 0 && (next < 0 || best(j) > best(next))) next = j;
     if (next < 0) return k;
     const Index i = from[at(next)];
-    // A part without modes: any mass will do, so 1.
+    // A part without modes: at rest any mass will do, so 1; with rotors scale_masses finds it.
     k(next) = i < 0 ? std::abs(A(next, next)) : k(i) * A(i, next) / A(next, i);
     offer(next);
   }
@@ -300,6 +303,20 @@ MatrixXd flexibility(const Coordinates& c, const MatrixXd& A_ee) {
   return (G + G.transpose()) / 2;
 }
 
+/// |entries| on the scale of the diagonal, rounding as 0.
+MatrixXd couplings(const MatrixXd& m) {
+  const VectorXd d = m.diagonal().cwiseSqrt().cwiseInverse();
+  const MatrixXd X = (d.asDiagonal() * m * d.asDiagonal()).cwiseAbs();
+  return (X.array() > linalg::kAxisRounding).select(X, 0);
+}
+
+/// Parts of coupled coordinates, of which none has a known stiffness.
+std::vector<std::vector<int>> unscaled(const Coordinates& c, const VectorXd& known) {
+  std::vector<std::vector<int>> parts = linalg::uncoupled_parts(couplings(c.G) + couplings(c.K));
+  std::erase_if(parts, [&](const std::vector<int>& part) { return !known(part).isZero(0); });
+  return parts;
+}
+
 void find_shares(Coordinates& c, const Graph& graph) {
   std::map<int, Index> row;
   for (const int node : c.nodes)
@@ -371,6 +388,7 @@ Coordinates coordinates(const System& system, const SystemData& data) {
   c.D = full(damping, &CoupledSpring::C);
   if (c.D.isZero(0)) c.D.resize(0, 0);
   c.G = flexibility(c, A_total(elastic, elastic));
+  c.unscaled = unscaled(c, VectorXd(raw.known(raw.kept))(elastic));
   c.A_loose = A_total(loose, elastic);
   c.B = raw.m.B(rows, Eigen::all);
   c.C_q = columns(raw.m.C, raw.pairs.position) * T(Eigen::all, order);

@@ -21,9 +21,13 @@ struct Coordinates {
   std::vector<int> nodes;           ///< of the graph
   std::vector<int> position, rate;  ///< places among the system's states; position -1: none
   Eigen::Index n_elastic = 0;
-  Eigen::MatrixXd G;         ///< n_elastic x n_elastic, symmetric positive definite
-  Eigen::MatrixXd K;         ///< the same size, symmetric positive definite
-  Eigen::MatrixXd D;         ///< the same, semidefinite; 0 x 0: undamped
+  Eigen::MatrixXd G;  ///< n_elastic x n_elastic, symmetric positive definite
+  Eigen::MatrixXd K;  ///< the same size, symmetric positive definite
+  Eigen::MatrixXd D;  ///< the same, semidefinite; 0 x 0: undamped
+  /// Coupled coordinates with stiffness, among which are no modes of a body and no bushing with
+  /// coupled axes: their G, K and D are known up to one factor, since only G K and G D are. Empty
+  /// after scale_masses.
+  std::vector<std::vector<int>> unscaled;
   bool diagonal = true;      ///< K is diagonal: no chain is closed, no bushing's axes are coupled
   Eigen::MatrixXd A_loose;   ///< qdd of the loose ones from q of the elastic ones
   Eigen::MatrixXd B;         ///< n x inputs
@@ -44,10 +48,11 @@ class NoStructure : public Error {
 };
 
 /// Extracts them from the model. Stiffnesses are those of the bodies' modes and of bushings with
-/// coupled axes; of joints and springs those that make G symmetric. Throws NoStructure (bad_value),
-/// with the names of states, if there is no such form: controllers and filters in the loop, springs
-/// between coordinates of different blocks, dampers on motions without stiffness. O(n^2), O(n^3)
-/// with closed chains.
+/// coupled axes; of joints and springs those that make G symmetric, with G_ii = 1 at the first
+/// coordinate of each part that is `unscaled`. Throws NoStructure (bad_value), with the names of
+/// states, if there is no such form: controllers and filters in the loop, springs between
+/// coordinates of different blocks, dampers on motions without stiffness. O(n^2), O(n^3) with
+/// closed chains.
 Coordinates coordinates(const System& system, const SystemData& data);
 
 }  // namespace titop::detail

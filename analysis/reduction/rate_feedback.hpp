@@ -24,6 +24,11 @@ struct RateFeedback {
 /// springs, dampers and gyroscopes. O(terms).
 std::optional<RateFeedback> rate_feedback(const Graph& graph, ParameterValues values);
 
+/// Scales the `unscaled` parts of the structure at rest so that w and z, its last inputs and
+/// outputs, are reciprocal: their modal vectors b and c become equal. Parts that no w reaches stay.
+/// O(n^3 + n^2 z).
+void scale_masses(Coordinates& coordinates, const RateFeedback& feedback);
+
 /// The whole of this diagram with its rates fed back: Z + P F P', P the modal vectors of w and z,
 /// which are equal by reciprocity; motions without stiffness become mass-normalised first. Outputs
 /// that accelerate with them are written so. Without the additional inputs and outputs. Throws

@@ -1,6 +1,7 @@
 // Mechanisms with rotors as users hand them on: generated code, report, drawing and file.
 #include <doctest/doctest.h>
 
+#include <array>
 #include <string>
 #include <titop/titop.hpp>
 
@@ -23,9 +24,22 @@ std::string warnings(const std::vector<Note>& notes) {
   return text;
 }
 
-/// Compiles without a warning, also by its file, as generated code and in the report.
-void check_handed_on(const Diagram& d) {
+/// Reduced within its bound without a warning, also as generated code.
+void check_scene(const Diagram& d, std::array<double, 2> band_hz) {
+  const Scene scene{.band_hz = band_hz, .accuracy = 1e-3};
+  const ReducedSystem r = compile(d, scene);
+  CAPTURE(to_string(r));
+  CHECK(warnings(r.notes()) == "");
+  CHECK(warnings(r.full().notes()) == "");
+  CHECK(r.bound().worst <= scene.accuracy);
+  CHECK(generate_cpp(compile(diagram_of_model(r.state_space(), "reduced"), {.minimize_up_to = 0}))
+            .error <= 1e-6);
+}
+
+/// Compiles without a warning, also by its file, as generated code, in the report and for a scene.
+void check_handed_on(const Diagram& d, std::array<double, 2> band_hz) {
   CAPTURE(d.graph().name);
+  check_scene(d, band_hz);
   const System system = compile(d), read = compile(parse_diagram(diagram_json(d)));
   CHECK(warnings(system.notes()) == "");
   CHECK(warnings(system.dense_notes()) == "");
@@ -67,12 +81,13 @@ TEST_CASE("a wheel with momentum in header, report and drawing") {
 }
 
 TEST_CASE("the mechanisms of the examples compile without a warning, and are handed on") {
-  check_handed_on(scenes::wheels::satellite(0, scenes::wheels::Motors::law));
-  check_handed_on(scenes::wheels::satellite(40, scenes::wheels::Motors::off));
-  check_handed_on(scenes::wheels::satellite(40, scenes::wheels::Motors::law));
-  check_handed_on(scenes::wheels::satellite(40, scenes::wheels::Motors::dumping));
-  check_handed_on(scenes::cmg::cluster());
-  check_handed_on(scenes::solar_array_drive::satellite());
+  check_handed_on(scenes::wheels::satellite(0, scenes::wheels::Motors::law), {0.01, 5});
+  check_handed_on(scenes::wheels::satellite(40, scenes::wheels::Motors::off), {0.01, 5});
+  check_handed_on(scenes::wheels::satellite(40, scenes::wheels::Motors::off, true), {0, 40});
+  check_handed_on(scenes::wheels::satellite(40, scenes::wheels::Motors::law), {0.01, 5});
+  check_handed_on(scenes::wheels::satellite(40, scenes::wheels::Motors::dumping), {0.01, 5});
+  check_handed_on(scenes::cmg::cluster(), {0.01, 30});
+  check_handed_on(scenes::solar_array_drive::satellite(), {0.01, 30});
   for (const auto model : {scenes::sloshing::Liquid::springs, scenes::sloshing::Liquid::pendulum})
-    check_handed_on(scenes::sloshing::satellite(model));
+    check_handed_on(scenes::sloshing::satellite(model), {0.01, 5});
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <titop/titop.hpp>
 
+#include "../../examples/scenes/cmg.hpp"
 #include "../../examples/scenes/wheels.hpp"
 #include "against.hpp"
 #include "support/mistakes.hpp"
@@ -63,8 +64,8 @@ void check_passive(const ReducedSystem& r, Eigen::Index accel, Eigen::Index coun
   }
 }
 
-/// All forms are one model.
-void check_forms(const ReducedSystem& r) {
+/// All forms are one model: `rounding` of a pair's peak.
+void check_forms(const ReducedSystem& r, double rounding = 1e-9) {
   const SecondOrderModel second = r.second_order();
   const StateSpace dense = r.state_space();
   const ModalModel modal = r.modal();
@@ -73,9 +74,9 @@ void check_forms(const ReducedSystem& r) {
     const auto off = [&](const MatrixXcd& other) {
       return (other - H).cwiseAbs().cwiseQuotient(r.bound().peak).maxCoeff();
     };
-    CHECK(off(second.transfer(s)) <= 1e-9);
-    CHECK(off(dense.transfer(s)) <= 1e-9);
-    CHECK(off(modal.transfer(s)) <= 1e-9);
+    CHECK(off(second.transfer(s)) <= rounding);
+    CHECK(off(dense.transfer(s)) <= rounding);
+    CHECK(off(modal.transfer(s)) <= rounding);
   }
 }
 
@@ -148,6 +149,141 @@ TEST_CASE("rotors: nutation, and G by hand") {
     CHECK(std::abs(H(2, 0).real() * h + 1) <= 1e-9);
     CHECK(std::abs(H(0, 2).real() * h - 1) <= 1e-9);
   }
+}
+
+/// A rotor about its axis y, of 0.05 kg m^2 across it, at a point of the ground in a turned frame.
+struct OnGround {
+  Diagram d{"on ground"};
+  Rotor::Handle rotor =
+      d.add("rotor", Rotor{.mass = 5, .axial = 0.08, .transverse = 0.05, .axis = {0, 1, 0}});
+  RigidBody::Handle base =
+      d.add("base",
+            RigidBody{.mass = 1, .inertia = Matrix3d::Identity(), .children = {{"C", {1, 2, 3}}}});
+  Rotation turn = Rotation::about({1, 2, 2}, 0.7);
+  explicit OnGround(double h) {
+    ground(base);
+    momentum(rotor.parent, h, {0, 1, 0});
+    rotor.accel = 0;
+  }
+};
+
+TEST_CASE("rotors: on a universal joint with springs, (k - I w^2)^2 = (h w)^2") {
+  constexpr double h = 40, k = 900, I = 0.05;
+  OnGround g(h);
+  auto j = joint(g.d, "u", g.rotor, g.base.child("C"), g.turn,
+                 {about({1, 0, 0}, "x"), about({0, 0, 1}, "z")});
+  for (const char* name : {"x", "z"}) {
+    auto axis = j.axis(name);
+    axis.force = k * axis.position - g.d.input(std::string("t") + name);
+    g.d.output(name) = axis.accel;
+  }
+  const Scene scene{.band_hz = {0.1, 200}, .accuracy = 1e-6};
+  const ReducedSystem r = compile(g.d, scene);
+  CAPTURE(to_string(r));
+  check_form(r);
+  check_bound(r, scene);
+  check_passive(r, 0, 2);
+  const double root = std::sqrt(h * h + 4 * I * k);
+  double slow = HUGE_VAL, fast = 0;
+  for (const Pole& p : poles(r.state_space()))
+    slow = std::min(slow, p.omega), fast = std::max(fast, p.omega);
+  CHECK(std::abs(slow * 2 * I / (root - h) - 1) <= 1e-12);
+  CHECK(std::abs(fast * 2 * I / (root + h) - 1) <= 1e-12);
+}
+
+TEST_CASE("rotors: on oblique gimbals with unequal springs, without equal inertias") {
+  const Vector3d axis = Vector3d(1, 2, 2) / 3, x = Vector3d(2, 1, -2) / 3,
+                 z = Vector3d(2, -2, 1) / 3;
+  for (const double h : {0.5, -40.0}) {
+    Diagram d{"gimbals"};
+    auto base =
+        d.add("base", RigidBody{.mass = 1, .inertia = Matrix3d::Identity(), .children = {{"C"}}});
+    ground(base);
+    Matrix3d I = Vector3d(0.3, 0.5, 0.7).asDiagonal();
+    I(0, 1) = I(1, 0) = 0.1;
+    auto frame =
+        d.add("frame", RigidBody{.mass = 2, .inertia = I, .children = {{"C", {0.1, 0, 0.2}}}});
+    auto rotor = d.add(
+        "rotor",
+        Rotor{
+            .mass = 5, .axial = 0.08, .transverse = 0.05, .axis = axis, .PA = {0.02, 0.03, -0.01}});
+    momentum(rotor.parent, h, axis);
+    rotor.accel = 0;
+    auto outer = hinge(d, "outer", frame, base.child("C"), {}, x);
+    auto inner = hinge(d, "inner", rotor, frame.child("C"), {}, z);
+    outer.torque = 300 * outer.angle + 0.1 * outer.rate - d.input("t1");
+    inner.torque = 900 * inner.angle - d.input("t2");
+    d.output("a1") = outer.accel;
+    d.output("a2") = inner.accel;
+    const Scene scene{.band_hz = {0.1, 200}, .accuracy = 1e-6};
+    const ReducedSystem r = compile(d, scene);
+    CAPTURE(to_string(r));
+    check_form(r);
+    check_bound(r, scene);
+    check_passive(r, 0, 2);
+  }
+}
+
+TEST_CASE("rotors: on a damped hinge and on a bushing, whose masses no body's modes determine") {
+  const Scene scene{.band_hz = {0.1, 100}, .accuracy = 1e-6};
+  for (const bool hinged : {true, false}) {
+    CAPTURE(hinged);
+    OnGround g(40);
+    if (hinged) {
+      auto j = hinge(g.d, "drive", g.rotor, g.base.child("C"), g.turn, {0, 0, 1});
+      j.torque = 500 * j.angle + 0.2 * j.rate - g.d.input("u");
+      g.d.output("accel") = j.accel;
+    } else {
+      bushing(g.d, "iso", g.rotor, g.base.child("C"), g.turn,
+              Bushing{.stiffness = Vector6{1e5, 2e5, 1e5, 500, 700, 600},
+                      .damping = Vector6{10, 20, 10, 0.2, 0.1, 0.3}});
+      g.rotor.parent.force += -g.d.input("u", 6);
+      g.d.output("accel", 6) = g.rotor.parent.accel;
+    }
+    const ReducedSystem r = compile(g.d, scene);
+    CAPTURE(to_string(r));
+    check_form(r);
+    check_bound(r, scene);
+    check_passive(r, 0, hinged ? 1 : 6);
+  }
+}
+
+TEST_CASE("rotors: a cluster of control moment gyroscopes on compliant gimbals") {
+  const Scene scene{.band_hz = {0.01, 30}, .accuracy = 1e-3};
+  const ReducedSystem r = compile(scenes::cmg::cluster(), scene);
+  CAPTURE(to_string(r));
+  check_form(r);
+  check_bound(r, scene);
+  check_forms(r, 1e-7);  // a torque about one axis hardly turns the hub about another: a difference
+                         // of large terms
+}
+
+TEST_CASE("rotors: three momenta on one body, more rates than motions") {
+  const Vector3d h(30, -20, 45), J(400, 500, 600);
+  Diagram d{"hub"};
+  auto hub = d.add("hub", RigidBody{.mass = 1000,
+                                    .inertia = J.asDiagonal(),
+                                    .children = {{"A", {0.3, -0.2, 0.5}}, {"B", {-0.1, 0.4, 0}}}});
+  hub.parent.force.linear = 0;
+  hub.parent.force.angular = -d.input("U", 3);
+  momentum(hub.parent, h(0), {1, 0, 0});
+  momentum(hub.child("A"), h(1), {0, 1, 0});
+  momentum(hub.child("B"), h(2), {0, 0, 1});
+  d.output("rate", 3) = hub.parent.rate.angular();
+  const ReducedSystem r = compile(d, Scene{.band_hz = {1e-3, 1}, .accuracy = 1e-9});
+  CAPTURE(to_string(r));
+  check_form(r);
+  const double nutation = std::sqrt(h.dot(J.asDiagonal() * h) / J.prod());
+  double found = 0;
+  for (const Pole& p : poles(r.state_space())) found = std::max(found, p.omega);
+  CHECK(std::abs(found / nutation - 1) <= 1e-12);
+  // J w' + w x h = T, h in the body.
+  Eigen::Matrix3cd Z = Eigen::Matrix3cd::Zero();
+  const std::complex<double> s(0.01, 0.07);
+  Z.diagonal() = s * J;
+  Z += (Eigen::Matrix3d() << 0, h(2), -h(1), -h(2), 0, h(0), h(1), -h(0), 0).finished();
+  const Eigen::Matrix3cd exact = Z.inverse();
+  CHECK((r.transfer(s) - exact).norm() <= 1e-12 * exact.norm());
 }
 
 TEST_CASE("rotors: the energy of a reduced model with momenta, which do no work") {
