@@ -51,6 +51,11 @@ BlockPtr read_block(const JsonPlace& place, const ReadValue& value, const FindBo
         .refuse(
             "none: a momentum h about a is the two equations that momentum(port, h, a) writes, for "
             "any body: torque h a x rate at the port, with \"add\": true");
+  const std::string_view name = type->name;
+  if ((name == "RigidBody" || name == "FlexibleBody") && place.has("spin"))
+    place.at("spin").refuse(
+        "none: while it spins, a body that is flexible or has unequal transverse inertias is "
+        "periodic in time; add a rigid axisymmetric body as a Rotor");
   return type->read(place, value, body);
 }
 

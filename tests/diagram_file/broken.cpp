@@ -233,6 +233,7 @@ TEST_CASE("a momentum or a spin of a body in a file is refused, and its equation
     const std::string block = R"("blocks": [{"name": "b", "type": ")" + type + "\", " + members;
     refused("\"blocks\": [", block + ", \"momentum\": 40}, ",
             {"cart.json", "blocks[0].momentum", "40", "momentum(port, h, a)"});
-    refused("\"blocks\": [", block + ", \"spin\": 40}, ", {"cart.json", "blocks[0]"});
+    const std::string why = type == "Rotor" ? "spin" : "periodic in time";
+    refused("\"blocks\": [", block + ", \"spin\": 40}, ", {"cart.json", "blocks[0]", why});
   }
 }
