@@ -17,7 +17,8 @@ struct Pole {
   double hertz = 0;        ///< |s| / 2 pi [Hz]
   double damping = 0;      ///< -Re(s) / |s| [-]; 0 for s = 0
   /// Blocks that take part, with their share (participation factors summed over the block's
-  /// states, of total 1), largest first, down to 5 %.
+  /// states, of total 1), largest first, down to 5 %. Motions of a free body, which are states if
+  /// an equation or an output reads them, stand under their name: "hub.parent.angular_rate".
   std::vector<std::pair<std::string, double>> blocks;
   /// Least and largest damping ratio of the modes, clamped at P, of the bodies among `blocks`, if
   /// `unlike_bodies`; else -1. Set by System::poles.

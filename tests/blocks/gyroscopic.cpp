@@ -75,6 +75,10 @@ TEST_CASE("momentum: nutation h / sqrt(I_x I_z), and the sign of precession, at 
   for (const System& s : systems) {
     check_frequencies(s, {h / std::sqrt(400.0 * 600.0)}, 1e-12);
     check_gyroscopic(s);
+    for (const Pole& pole : s.poles()) {
+      REQUIRE(pole.blocks.size() >= 1);
+      CHECK(pole.blocks[0].first.starts_with("hub.parent.angular"));
+    }
     // Of a constant torque the momentum follows: h omega_z = -T_x, h omega_x = T_z.
     const Eigen::MatrixXcd slow = s.transfer({0, 1e-7});
     CHECK(std::abs(slow(2, 3) + 1 / h) <= 1e-9);

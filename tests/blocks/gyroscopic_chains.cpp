@@ -20,13 +20,14 @@ bool has_rotor(const Sketch& sketch) {
 TEST_CASE("momenta and rotors in 200 trees and closed chains: by hand, and G(h)' = G(-h)") {
   Rng rng(20261130);
   int judged = 0, gyroscopic = 0, closed = 0, rotors = 0;
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; judged < 200; ++i) {
     CAPTURE(i);
     Sketch sketch = draw(rng, i % 2 == 1);
     if (i % 3 == 0)
       std::erase_if(sketch.ties, [](const HalfTie& t) { return t.target_point >= 0; });
     sketch.seen = sketch.load, sketch.seen_point = sketch.load_point;
     draw_momenta(rng, sketch, 5);
+    REQUIRE(i < 250);
     const Oracle o = oracle(sketch);
     if (o.gap < 1e-4) continue;  // near singular
     ++judged;
@@ -43,8 +44,7 @@ TEST_CASE("momenta and rotors in 200 trees and closed chains: by hand, and G(h)'
     }
     gyroscopic += one_way;
   }
-  CHECK(judged >= 180);
-  CHECK(closed >= 110);
+  CHECK(closed >= 120);
   CHECK(rotors >= 80);
   CHECK(2 * gyroscopic > judged);  // most of them are not reciprocal as they are
 }
