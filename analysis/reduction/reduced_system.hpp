@@ -117,8 +117,8 @@ class ReducedSystem {
   /// The structure kept. Throws bad_value for balanced models, with the reason why they have none.
   SecondOrderModel second_order() const;
   /// 2 x 2 blocks. O(order^3) if damping couples modes. Throws singular if these are too close to
-  /// defective (such as two critically damped modes of equal frequency, or free motions in outputs
-  /// of positions of a structure with momenta); second_order() always works.
+  /// defective (such as two critically damped modes of equal frequency, or free motions of
+  /// a structure with momenta, if outputs read positions); second_order() always works.
   ModalModel modal() const;
 
   /// The scene, with the required accuracy.
