@@ -28,6 +28,17 @@ std::string prevented(const Factored& d, const RowMatrix<double>& xdot,
   return {};
 }
 
+/// Each the largest of its unit: in turned frames entries of one motion or force mix.
+void share_by_unit(const Factored& d, RowMatrix<double>& rounding) {
+  for (std::size_t o = 0; o < d.graph().outputs.size(); ++o) {
+    const int size = d.graph().outputs[o].size, each = size == 6 ? 3 : 1;
+    for (int k = 0; k < size; k += each) {
+      auto unit = rounding.middleRows(d.layout().output_first[o] + k, each);
+      unit.setConstant(unit.maxCoeff());
+    }
+  }
+}
+
 }  // namespace
 
 /// With x of the transfer at s, the model xdot = A x + B u, y = C x + D u that apply computes has
@@ -50,9 +61,10 @@ ApplyDifference apply_difference(const Factored& d, const Evaluation<double>& po
   if (const double plain = share(); plain <= kWarn) return {plain, {}};
   const Instant plain(d, known);
   const Instant doubt = plain.doubt();
-  const RowMatrix<double> rounding =
+  RowMatrix<double> rounding =
       outputs(d.states.kept_rows(doubt.xdot()), doubt.outputs()).cwiseAbs() +
       point.rounding().cwiseAbs();
+  share_by_unit(d, rounding);
   off = (off.cwiseAbs() - linalg::kNoise * rounding).cwiseMax(0);
   const double worst = share();
   if (worst <= kRoundingFactor * lost) return {};
