@@ -23,6 +23,8 @@ using Complex = std::complex<double>;
 /// A level is above the largest value found by this: its crossings are then 1e-5 half bandwidths
 /// apart, the root, of which kHalfDigits leave three digits.
 constexpr double kAbove = 1e-10;
+/// A value is near that of the direct term: levels further above it keep 14 digits.
+constexpr double kNearDirect = 1e-2;
 
 /// Singular values of H(j omega), with the slope of the largest one.
 class SingularValues {
@@ -109,6 +111,30 @@ HinfNorm first(const SingularValues& gain, const Eigen::VectorXcd& poles, double
   return best;
 }
 
+/// Levels above the largest value found, in parts of it. Near that of the direct term the
+/// Hamiltonian matrix has entries of 1 / (1 - D' D / gamma^2), and loses as many digits: from far
+/// above it first.
+std::vector<double> levels(double value, double direct) {
+  if (value > (1 + kNearDirect) * direct) return {kAbove};
+  return {10 * kNearDirect, kNearDirect, 1e-4, 1e-6, 1e-8, kAbove};
+}
+
+/// Replaces `best` by a larger value at or between the crossings of a level above it; false if
+/// there is none above the lowest of these levels.
+bool raised(HinfNorm& best, const SingularValues& gain, const StateSpace& m, double direct,
+            const std::array<double, 2>& band) {
+  const double before = best.value;
+  for (const double part : levels(before, direct)) {
+    std::vector<double> points = crossings(m, before * (1 + part), band[0], band[1]);
+    const std::vector<double> between = midpoints(points);
+    points.insert(points.end(), between.begin(), between.end());
+    for (const double omega : points)
+      if (HinfNorm p = gain.at(omega); p.value > best.value) best = std::move(p);
+    if (best.value > before * (1 + kAbove)) return true;
+  }
+  return false;
+}
+
 /// The intervals of these frequencies in which the largest singular value exceeds the level; of
 /// width 0 if it does so at one of them only, whose neighbours rounding has merged with it.
 std::vector<std::array<double, 2>> above(const SingularValues& gain,
@@ -192,15 +218,8 @@ HinfNorm norm_hinf(const StateSpace& model, const HinfOptions& options) {
   const SingularValues gain(m);
   HinfNorm best = first(gain, poles, from, to);
   if (m.order() == 0 || !(best.value > 0)) return best;
-  for (bool larger = true; larger;) {
-    const double level = best.value * (1 + kAbove);
-    larger = false;
-    std::vector<double> points = crossings(m, level, from, to);
-    const std::vector<double> between = midpoints(points);
-    points.insert(points.end(), between.begin(), between.end());
-    for (const double omega : points)
-      if (HinfNorm p = gain.at(omega); p.value > best.value)
-        larger = larger || p.value > level, best = std::move(p);
+  const double direct = gain.at(HUGE_VAL).value;
+  while (raised(best, gain, m, direct, {from, to})) {
   }
   const double level = best.value * (1 - linalg::kHalfDigits);
   std::vector<double> ends = crossings(m, level, from, to);

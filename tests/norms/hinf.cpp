@@ -222,3 +222,21 @@ TEST_CASE("models without a norm are refused") {
   large.D = MatrixXd::Zero(1, 1);
   CHECK(says(error_of([&] { norm_hinf(large); }), Code::bad_value, {"601", "600", "Scene"}));
 }
+
+TEST_CASE("a narrow peak above the direct term") {
+  // (s^2 + 2 zz wz s + wz^2) (s + b) / ((s^2 + 2 zp wp s + wp^2) (s + a)): 1 at infinity, and
+  // beside a pole and a zero that nearly cancel 1.30725 (in 50 digits).
+  const double a = 0.7265253112684847, b = 0.05165429358995563, wp = 3.1132656370273737,
+               zp = 2.339301048697969e-07, wz = 3.113264987783945, zz = -2.884477859470711e-08;
+  const double p1 = 2 * zp * wp + a, p2 = wp * wp + 2 * zp * wp * a, p3 = wp * wp * a,
+               q1 = 2 * zz * wz + b, q2 = wz * wz + 2 * zz * wz * b, q3 = wz * wz * b;
+  StateSpace m;
+  m.A = (MatrixXd(3, 3) << 0, 1, 0, 0, 0, 1, -p3, -p2, -p1).finished();
+  m.B = MatrixXd::Zero(3, 1), m.B(2, 0) = 1;
+  m.C = (MatrixXd(1, 3) << q3 - p3, q2 - p2, q1 - p1).finished();
+  m.D = MatrixXd::Ones(1, 1);
+  const HinfNorm all = norm_hinf(m), band = norm_hinf(m, {.band_hz = {0, 10}});
+  CHECK(all.value >= 1.30725200318);
+  CHECK(std::abs(all.value / band.value - 1) <= 1e-6);
+  CHECK(std::abs(all.omega / 3.113266446931938 - 1) <= 1e-7);
+}
