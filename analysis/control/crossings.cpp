@@ -89,6 +89,17 @@ void drop_at_zero(std::vector<Complex>& candidates, const std::vector<Complex>& 
                 [&](const Complex& s) { return std::abs(s) < linalg::kDoubleRoot * slowest; });
 }
 
+/// Extends the list by factors of 10, up to where f has the sign that it has at infinity, and down
+/// to where it has the sign at 0: far beyond all poles and zeros a large gain falls, or rises,
+/// to 1.
+void extend(std::vector<double>& list, const Function& f, double at_infinity) {
+  const double at_zero = f(0);
+  while (f(list.back()) * at_infinity < 0 && list.back() < HUGE_VAL / 100)
+    list.push_back(10 * list.back());
+  while (f(list.front()) * at_zero < 0 && list.front() > std::numeric_limits<double>::min())
+    list.insert(list.begin(), list.front() / 10);
+}
+
 std::vector<Complex> roots_of_model(const StateSpace& L) {
   std::vector<Complex> roots = all_poles(L);
   add(roots, transmission_zeros(L));
@@ -107,7 +118,9 @@ std::vector<LoopCrossing> unit_crossings(const StateSpace& L, const LoopResponse
   drop_at_zero(candidates, roots, f);
   roots.insert(roots.end(), candidates.begin(), candidates.end());
   std::vector<LoopCrossing> result;
-  for (const double omega : roots_of(f, structured(roots, 0, 0), candidates))
+  std::vector<double> list = structured(roots, 0, 0);
+  extend(list, f, std::abs(L.D(0, 0)) - 1);
+  for (const double omega : roots_of(f, list, candidates))
     result.push_back({omega, response.at(omega)});
   return result;
 }

@@ -5,6 +5,7 @@
 #include <titop/analysis/control/crossings.hpp>
 #include <titop/analysis/control/feedback.hpp>
 #include <titop/analysis/control/nyquist.hpp>
+#include <titop/analysis/control/zeros.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/support/each_once.hpp>
@@ -21,6 +22,7 @@ constexpr double kFirstStep = 1e-12;  ///< of its modulus: beside a pole on the 
 constexpr double kEnd = 1e3;          ///< times the fastest pole: the determinant is near its limit
 constexpr double kWhole = 0.1;        ///< of a turn: the sum of all is a whole number of them
 constexpr int kHalvings = 40;
+constexpr int kPointsAround = 16;  ///< of a circle around a pole on the axis
 /// Of a determinant that is rounding alone no step is small enough: the count then does not agree.
 constexpr int kSplits = 1000;  ///< of one piece
 
@@ -70,17 +72,25 @@ std::vector<double> on_axis(const std::vector<SidedPole>& open) {
   return list;
 }
 
-/// A third of the distance to the next pole elsewhere.
-double radius(double omega, const std::vector<Complex>& poles, const LoopResponse& response) {
+/// True if |L| > 10 at points of this circle around j omega.
+bool large_around(double omega, double r, const LoopResponse& response) {
+  for (int k = 0; k < kPointsAround; ++k)
+    if (!(response.at(Complex(0, omega) + std::polar(r, 2 * pi * k / kPointsAround)).norm() > 10))
+      return false;
+  return true;
+}
+
+/// A third of the distance to the next root elsewhere: poles, and with a delay also zeros of L.
+double radius(double omega, const std::vector<Complex>& roots, const LoopResponse& response) {
   double nearest = omega > 0 ? omega : HUGE_VAL;
-  for (const Complex& s : poles)
+  for (const Complex& s : roots)
     if (const double d = std::abs(s - Complex(0, omega));
         d > linalg::kSameFrequency * std::abs(s) && d > 0)
       nearest = std::min(nearest, d);
   double r = std::isinf(nearest) ? 1 : nearest / 3;
-  // Closed-loop poles with a delay are not known: none is where |L| is large.
-  for (int k = 0; response.delay() > 0 && k < 60; ++k, r /= 4)
-    if (response.at(Complex(r, omega)).norm() > 10) break;
+  // Closed-loop poles with a delay are not known. None is inside if |L| > 1 on the circle, within
+  // which L has no zero: 1 / L is analytic there, and largest on the circle.
+  for (int k = 0; response.delay() > 0 && k < 60 && !large_around(omega, r, response); ++k) r /= 4;
   return r;
 }
 
@@ -127,8 +137,11 @@ double turn_of_half(const StateSpace& L, const LoopResponse& response,
       sum += winding.along(
           [&](double t) { return Complex(0, list[i] + t * (list[i + 1] - list[i])); });
   };
+  std::vector<Complex> roots = poles;
+  if (response.delay() > 0)
+    for (const Complex& s : transmission_zeros(L)) roots.push_back(s);
   for (const double omega : on_axis(open)) {
-    const double r = radius(omega, poles, response), first = omega > 0 ? -pi / 2 : 0;
+    const double r = radius(omega, roots, response), first = omega > 0 ? -pi / 2 : 0;
     if (omega > 0) straight(omega - r);
     sum += winding.along(
         [&](double t) { return Complex(0, omega) + std::polar(r, first + t * (pi / 2 - first)); });

@@ -189,6 +189,38 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("closed-loop poles of a loop with a delay near zeros of L beside a pole on the axis") {
+  // L = 100 (s^2 - 0.18 s + 0.81) / (s (s^2 + 1)): of the zeros, right of the axis, closed-loop
+  // poles are near. L = 20 (s + 1)^2 (s^2 + 0.81) / (s^3 (s^2 + 1)): the same zeros on the axis.
+  for (const bool integrals : {false, true}) {
+    CAPTURE(integrals);
+    const StateSpace L = integrals
+                             ? ratio({20, 40, 20 * 1.81, 40 * 0.81, 20 * 0.81}, {1, 0, 1, 0, 0, 0})
+                             : ratio({100, -18, 81}, {1, 0, 1, 0});
+    const Margins m = margins(L, {.delay = 1e-3});
+    CHECK_FALSE(m.stable);
+    CHECK(m.nyquist.agree);
+    CHECK(m.nyquist.closed_right == 2);
+  }
+}
+
+TEST_CASE("|L| = 1 far beyond all poles and zeros") {
+  // k / (s^2 + 0.02 s + 1): w^4 + (0.02^2 - 2) w^2 + 1 = k^2.
+  for (const double k : {1e4, 1e8, 1e12}) {
+    CAPTURE(k);
+    const double half = 1 - 0.0002, w = std::sqrt(half + std::sqrt(half * half + k * k - 1));
+    const LoopMargins m = one(ratio({k}, {1, 0.02, 1}));
+    REQUIRE(m.unit.size() == 1);
+    CHECK(std::abs(m.unit[0].omega / w - 1) <= 1e-9);
+    CHECK(std::abs(m.phase.value / std::atan2(0.02 * w, w * w - 1) - 1) <= 1e-6);
+  }
+  // 1e6 s / (s + 1)^2: at 1e-6 and at 1e6, as w (1e6) = 1 + w^2.
+  const LoopMargins m = one(ratio({1e6, 0}, {1, 2, 1}));
+  REQUIRE(m.unit.size() == 2);
+  CHECK(std::abs(m.unit[0].omega * 1e6 - 1) <= 1e-9);
+  CHECK(std::abs(m.unit[1].omega / 1e6 - 1) <= 1e-9);
+}
+
 TEST_CASE("with a delay and a pole on the axis, or a direct term") {
   const Margins m = margins(ratio({1}, {1, 0}), {.delay = pi / 2});  // -1 at 1 rad/s
   CHECK(!m.stable);
