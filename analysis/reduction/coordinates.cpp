@@ -207,33 +207,21 @@ VectorXd stiffnesses(const MatrixXd& A, const VectorXd& known) {
   }
 }
 
-/// Stiffness of all coordinates: of independent ones by symmetry, of dependent ones from their
-/// columns of A; of coupled springs 1.
+/// Stiffness of all coordinates q = T q_kept by symmetry, T A_k = -(T G T') k; of coupled
+/// springs 1. A dependent coordinate that moves by rounding only has none.
 VectorXd all_stiffnesses(const Raw& raw) {
-  VectorXd k = VectorXd::Zero(raw.all());
-  std::vector<Index> rows, list;
-  for (std::size_t r = 0; r < raw.kept.size(); ++r)
-    if (raw.A_k.col(raw.kept[r]).cwiseAbs().maxCoeff() > 0) {
-      rows.push_back(static_cast<Index>(r));
-      list.push_back(raw.kept[r]);
-    }
-  const MatrixXd A = raw.A_k(rows, list);
-  for (std::size_t i = 0; i < list.size(); ++i)
-    if (!(A(static_cast<Index>(i), static_cast<Index>(i)) < 0))
-      refuse(
-          fmt::format("{} has no spring of its own, but acts on other states", raw.name(list[i])));
-  k(list) = stiffnesses(A, raw.known(list));
-  if (raw.T.size() == 0) return k;
-  MatrixXd G(A.rows(), A.cols());
-  for (Index j = 0; j < A.cols(); ++j) G.col(j) = -A.col(j) / k(list[at(j)]);
-  for (Index i = 0; i < raw.all(); ++i) {
-    if (std::find(raw.kept.begin(), raw.kept.end(), i) != raw.kept.end()) continue;
-    const VectorXd t = raw.T(i, rows).transpose();
-    const VectorXd response = G * t;
-    k(i) = raw.known(i) != 0     ? raw.known(i)
-           : response.norm() > 0 ? -response.dot(raw.A_k(rows, i)) / response.squaredNorm()
-                                 : 0;
+  const bool closed = raw.T.size() > 0;
+  const MatrixXd rates = closed ? MatrixXd(raw.T * raw.A_k) : raw.A_k;
+  std::vector<int> list;
+  for (int i = 0; i < raw.all(); ++i) {
+    if (raw.A_k.col(i).isZero(0)) continue;
+    const bool acts = rates(i, i) < 0, kept = std::ranges::binary_search(raw.kept, i);
+    if (kept && !acts)
+      refuse(fmt::format("{} has no spring of its own, but acts on other states", raw.name(i)));
+    if (acts) list.push_back(i);
   }
+  VectorXd k = VectorXd::Zero(raw.all());
+  k(list) = stiffnesses(rates(list, list), raw.known(list));
   return k;
 }
 
@@ -388,7 +376,10 @@ Coordinates coordinates(const System& system, const SystemData& data) {
   c.D = full(damping, &CoupledSpring::C);
   if (c.D.isZero(0)) c.D.resize(0, 0);
   c.G = flexibility(c, A_total(elastic, elastic));
-  c.unscaled = unscaled(c, VectorXd(raw.known(raw.kept))(elastic));
+  // Of a kept coordinate also if one that follows from it has a known stiffness.
+  const VectorXd known =
+      closed ? VectorXd(raw.T.transpose().cwiseAbs() * raw.known) : VectorXd(raw.known(raw.kept));
+  c.unscaled = unscaled(c, known(elastic));
   c.A_loose = A_total(loose, elastic);
   c.B = raw.m.B(rows, Eigen::all);
   c.C_q = columns(raw.m.C, raw.pairs.position) * T(Eigen::all, order);
