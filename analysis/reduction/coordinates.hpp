@@ -28,7 +28,7 @@ struct Coordinates {
   /// coupled axes: their G, K and D are known up to one factor, since only G K and G D are. Empty
   /// after scale_masses.
   std::vector<std::vector<int>> unscaled;
-  bool diagonal = true;      ///< K is diagonal: no chain is closed, no bushing's axes are coupled
+  bool diagonal = true;      ///< K is diagonal: no chain is closed, there are no coupled springs
   Eigen::MatrixXd A_loose;   ///< qdd of the loose ones from q of the elastic ones
   Eigen::MatrixXd B;         ///< n x inputs
   Eigen::MatrixXd C_q, C_v;  ///< outputs x n
