@@ -89,15 +89,19 @@ void drop_at_zero(std::vector<Complex>& candidates, const std::vector<Complex>& 
                 [&](const Complex& s) { return std::abs(s) < linalg::kDoubleRoot * slowest; });
 }
 
-/// Extends the list by factors of 10, up to where f has the sign that it has at infinity, and down
-/// to where it has the sign at 0: far beyond all poles and zeros a large gain falls, or rises,
-/// to 1.
-void extend(std::vector<double>& list, const Function& f, double at_infinity) {
-  const double at_zero = f(0);
-  while (f(list.back()) * at_infinity < 0 && list.back() < HUGE_VAL / 100)
-    list.push_back(10 * list.back());
-  while (f(list.front()) * at_zero < 0 && list.front() > std::numeric_limits<double>::min())
-    list.insert(list.begin(), list.front() / 10);
+/// Extends the list by factors of 10, up to where f has its sign at infinity, and down to where it
+/// has its sign at 0: far beyond all poles and zeros a large gain falls, or rises, to 1. Not if f
+/// is 0 to half the digits at that end.
+void extend(std::vector<double>& list, const Function& f) {
+  const auto beyond = [&](double end, double factor) {
+    const double sign = f(end);
+    double omega = factor > 1 ? list.back() : list.front();
+    if (std::abs(sign) <= linalg::kHalfDigits) return;
+    while (f(omega) * sign < 0 && std::isnormal(omega * factor)) list.push_back(omega *= factor);
+    std::sort(list.begin(), list.end());
+  };
+  beyond(std::numeric_limits<double>::infinity(), 10);
+  beyond(0, 0.1);
 }
 
 std::vector<Complex> roots_of_model(const StateSpace& L) {
@@ -119,7 +123,7 @@ std::vector<LoopCrossing> unit_crossings(const StateSpace& L, const LoopResponse
   roots.insert(roots.end(), candidates.begin(), candidates.end());
   std::vector<LoopCrossing> result;
   std::vector<double> list = structured(roots, 0, 0);
-  extend(list, f, std::abs(L.D(0, 0)) - 1);
+  extend(list, f);
   for (const double omega : roots_of(f, list, candidates))
     result.push_back({omega, response.at(omega)});
   return result;

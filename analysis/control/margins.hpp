@@ -58,7 +58,8 @@ struct NyquistCount {
   int open_right = 0;      ///< P: poles of L right of the axis
   int closed_right = 0;    ///< Z: closed-loop poles right of the axis; with a delay P + N
   int closed_on_axis = 0;  ///< closed-loop poles on the axis, up to the rounding of their matrix;
-                           ///< with a delay 1 if L comes closer to -1 than 1.5e-8
+                           ///< with a delay 1 if L comes closer to -1 than 1.5e-8, or does
+                           ///< not see a pole on the axis
   /// N: clockwise turns of det(1 + L(s)) about 0 as s goes up the imaginary axis, right of poles on
   /// it. Not counted (0) with closed-loop poles on the axis.
   int encirclements = 0;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <optional>
 #include <titop/analysis/control/crossings.hpp>
 #include <titop/analysis/control/feedback.hpp>
 #include <titop/analysis/control/nyquist.hpp>
@@ -23,6 +24,7 @@ constexpr double kEnd = 1e3;          ///< times the fastest pole: the determina
 constexpr double kWhole = 0.1;        ///< of a turn: the sum of all is a whole number of them
 constexpr int kHalvings = 40;
 constexpr int kPointsAround = 16;  ///< of a circle around a pole on the axis
+constexpr int kCircles = 60;       ///< tried, each a fourth of the one before: down to 1e-36
 /// Of a determinant that is rounding alone no step is small enough: the count then does not agree.
 constexpr int kSplits = 1000;  ///< of one piece
 
@@ -80,7 +82,8 @@ bool large_around(double omega, double r, const LoopResponse& response) {
   return true;
 }
 
-/// A third of the distance to the next root elsewhere: poles, and with a delay also zeros of L.
+/// A third of the distance to the next root elsewhere: poles, and with a delay also zeros of L. 0
+/// with a delay if |L| is large on no circle: L does not see this pole, which stays as it is.
 double radius(double omega, const std::vector<Complex>& roots, const LoopResponse& response) {
   double nearest = omega > 0 ? omega : HUGE_VAL;
   for (const Complex& s : roots)
@@ -90,7 +93,8 @@ double radius(double omega, const std::vector<Complex>& roots, const LoopRespons
   double r = std::isinf(nearest) ? 1 : nearest / 3;
   // Closed-loop poles with a delay are not known. None is inside if |L| > 1 on the circle, within
   // which L has no zero: 1 / L is analytic there, and largest on the circle.
-  for (int k = 0; response.delay() > 0 && k < 60 && !large_around(omega, r, response); ++k) r /= 4;
+  for (int k = 0; response.delay() > 0 && !large_around(omega, r, response); ++k, r /= 4)
+    if (k == kCircles) return 0;
   return r;
 }
 
@@ -125,9 +129,11 @@ double end_of_steps(const StateSpace& L, const LoopResponse& response,
   return end;
 }
 
-/// The turn of det(1 + L) from s = 0 (or right of it) up the axis to infinity.
-double turn_of_half(const StateSpace& L, const LoopResponse& response,
-                    const std::vector<SidedPole>& open, const std::vector<Complex>& poles) {
+/// The turn of det(1 + L) from s = 0 (or right of it) up the axis to infinity; none if L does not
+/// see a pole on the axis.
+std::optional<double> turn_of_half(const StateSpace& L, const LoopResponse& response,
+                                   const std::vector<SidedPole>& open,
+                                   const std::vector<Complex>& poles) {
   const Winding winding(response);
   const double end = end_of_steps(L, response, poles);
   double sum = 0, from = 0;
@@ -142,6 +148,7 @@ double turn_of_half(const StateSpace& L, const LoopResponse& response,
     for (const Complex& s : transmission_zeros(L)) roots.push_back(s);
   for (const double omega : on_axis(open)) {
     const double r = radius(omega, roots, response), first = omega > 0 ? -pi / 2 : 0;
+    if (r == 0) return {};
     if (omega > 0) straight(omega - r);
     sum += winding.along(
         [&](double t) { return Complex(0, omega) + std::polar(r, first + t * (pi / 2 - first)); });
@@ -171,7 +178,12 @@ NyquistCount nyquist_count(const StateSpace& L, const LoopResponse& response, do
     }
     if (count.closed_on_axis > 0) return count;
   }
-  const double turns = -2 * turn_of_half(L, response, open, poles) / (2 * pi);
+  const std::optional<double> half = turn_of_half(L, response, open, poles);
+  if (!half) {
+    count.closed_on_axis = 1;
+    return count;
+  }
+  const double turns = -2 * *half / (2 * pi);
   count.encirclements = static_cast<int>(std::lround(turns));
   if (response.delay() > 0) count.closed_right = count.open_right + count.encirclements;
   count.agree = std::abs(turns - count.encirclements) < kWhole && count.closed_right >= 0 &&

@@ -204,6 +204,19 @@ TEST_CASE("closed-loop poles of a loop with a delay near zeros of L beside a pol
   }
 }
 
+TEST_CASE("a delayed loop with an undamped mode that L does not see is not stable") {
+  StateSpace L = ratio({1}, {1, 1});
+  const Eigen::MatrixXd A = L.A;
+  L.A = Eigen::MatrixXd::Zero(3, 3), L.A(0, 0) = A(0, 0), L.A(1, 2) = 3, L.A(2, 1) = -3;
+  L.B.conservativeResizeLike(Eigen::MatrixXd::Zero(3, 1));
+  L.C.conservativeResizeLike(Eigen::MatrixXd::Zero(1, 3));
+  for (const double delay : {0.0, 0.1}) {
+    const Margins m = margins(L, {.delay = delay});
+    CHECK(m.nyquist.closed_on_axis > 0);
+    CHECK_FALSE(m.stable);
+  }
+}
+
 TEST_CASE("|L| = 1 far beyond all poles and zeros") {
   // k / (s^2 + 0.02 s + 1): w^4 + (0.02^2 - 2) w^2 + 1 = k^2.
   for (const double k : {1e4, 1e8, 1e12}) {
@@ -214,6 +227,8 @@ TEST_CASE("|L| = 1 far beyond all poles and zeros") {
     CHECK(std::abs(m.unit[0].omega / w - 1) <= 1e-9);
     CHECK(std::abs(m.phase.value / std::atan2(0.02 * w, w * w - 1) - 1) <= 1e-6);
   }
+  // Next to 1 at high frequencies: no crossing, by rounding either.
+  CHECK(one(ratio({1 - 1e-15, 1}, {1, 3})).unit.empty());
   // 1e6 s / (s + 1)^2: at 1e-6 and at 1e6, as w (1e6) = 1 + w^2.
   const LoopMargins m = one(ratio({1e6, 0}, {1, 2, 1}));
   REQUIRE(m.unit.size() == 2);
